@@ -170,13 +170,7 @@ class Run:
         return write_atomically(self.path(f"{name}.npz"), stream.getvalue())
 
     def table(
-        self,
-        name: str,
-        rows: Sequence[T],
-        caption: str = "",
-        *,
-        of: type[T],
-        show: Sequence[str] | None = None,
+        self, name: str, rows: Sequence[T], caption: str = "", *, of: type, show: Sequence[str] | None = None
     ) -> Path:
         """NAME.csv of rows of the dataclass `of`; on the terminal the columns `show` (all by default)."""
         from rich.console import Console
@@ -210,26 +204,22 @@ class Run:
         self.say(self.failures[-1])
 
     def verdict(self, point: str, verdict: Verdict, *, found: str, note: str = "") -> None:
-        """What was found of a point of the letter (`letter.POINTS`), and a sentence on it; of another spring
-        nothing is kept.
+        """What was found of a point of the letter (`letter.POINTS`), if the spring is the letter's.
 
         "fitted": the scene was calibrated to that number; "not printed": the letter gives none to compare.
         """
         if point not in letter.POINTS or letter.POINTS[point].study != self.study:
             raise KeyError(f"{self.study} judges no point {point!r} of letter.POINTS")
-        if self.of_the_letter:
-            self._verdicts[point] = {"verdict": verdict, "found": found, "note": note}
+        self._verdicts |= {point: {"verdict": verdict, "found": found, "note": note}} if self.letters else {}
 
     def answer(self, question: str, text: str) -> None:
-        """The answer, or this study's part of it, to a question of `letter.QUESTIONS`; of another spring
-        nothing is kept."""
+        """The answer, or a part of it, to a question of `letter.QUESTIONS`, if the spring is the letter's."""
         if question not in letter.QUESTIONS or self.study not in letter.QUESTIONS[question][1]:
             raise KeyError(f"{self.study} answers no question {question!r} of letter.QUESTIONS")
-        if self.of_the_letter:
-            self._answers[question] = text
+        self._answers |= {question: text} if self.letters else {}
 
     @cached_property
-    def of_the_letter(self) -> bool:
+    def letters(self) -> bool:
         """Whether the scene is a spring of the letter."""
         return of_the_letter(self.scene)
 

@@ -118,5 +118,5 @@ def judge(run: Run, at: Approach, orbits: Sequence[Approach], floors: Sequence[F
         f"{at.restitution:.3f}, and of {least:.3f} at least over the mass of the ball ({lossy:.3f} with any "
         f"loss in the contact): a floor that the contact time of {1e6 * at.contact_s:.0f} µs sets. On "
         f"settled orbits, where the collision before still rings, it is {span}. The delay is "
-        f" {delay}, {share} in which the tip would turn by itself.",
+        f"{delay}, {share} in which the tip would turn by itself.",
     )

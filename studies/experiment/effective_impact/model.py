@@ -193,10 +193,8 @@ class Spring:
 
 
 def cases_of(spring: Spring, masses: Sequence[Spring], fine: Spring, every: int = 1) -> Iterator[Case]:
-    """Every case, or every `every`-th of a curve: of the spring, with other tip masses, on a finer mesh.
-
-    Those with other tip masses are in Hertz's contact: they are left out where the scene has another law.
-    """
+    """Every case, or every `every`-th of a curve: of the spring, on a finer mesh and, if the law of the scene
+    is Hertz's, with other tip masses."""
     own, hertz = contact_law_of(spring.scene), hertz_of(spring.scene)
     other: list[tuple[str, Spring, ContactLaw]] = [] if own == hertz else [(OWN, spring, own)]
     lines = [*other, (HERTZ, spring, hertz), ("bare tip, Hertz", masses[0], hertz)]

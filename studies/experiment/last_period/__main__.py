@@ -25,15 +25,8 @@ from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import Annotated
 
-from studies.experiment.last_period import pairs
+from studies.experiment.last_period import changes, pairs
 from studies.experiment.last_period.causes import Effect, causes_of, effect_of
-from studies.experiment.last_period.changes import (
-    DESCRIPTIONS,
-    Transition,
-    changes_of,
-    transitions_after,
-    transitions_at,
-)
 from studies.experiment.last_period.clouds import Clouds, clouds_of, frequency_of
 from studies.letter import AMPLITUDE_STABILITY, PERIODS
 from studies.physics.descriptions import strobed_at
@@ -44,8 +37,7 @@ from studies.shell.study import Run, study
 HIGHEST = max(PERIODS.values())
 """m of the last transition that the letter saw."""
 
-FREQUENCY_HZ = 22.20
-"""The letter's p5."""
+FREQUENCY_HZ = 22.20  # the letter's p5
 
 IN_NOISE = range(3, 17), range(8, 12)
 """m of Eq. (1) in noise: the full form, the small one."""
@@ -67,11 +59,17 @@ def last_period(
     model, frequencies = model_of(scene), sorted(scene.drive.frequencies_hz)
 
     base = [
-        row for rows in run.map(partial(transitions_at, scene, model), frequencies, "now") for row in rows
+        row
+        for rows in run.map(partial(changes.transitions_at, scene, model), frequencies, "now")
+        for row in rows
     ]
-    after = run.attempt(partial(transitions_after, scene, base), changes_of(scene, run.quick), "changes")
+    after = run.attempt(
+        partial(changes.transitions_after, scene, base), changes.changes_of(scene, run.quick), "changes"
+    )
     rows = base + [row for found in after for row in found or ()]
-    run.table("sensitivity", rows, "Born period and fold after each change of one parameter.", of=Transition)
+    run.table(
+        "sensitivity", rows, "Born period and fold after each change of one parameter.", of=changes.Transition
+    )
     from studies.experiment.last_period import figure  # matplotlib is slow to import
 
     run.figure("fold_against_parameter", figure.draw_tornado(rows), figure.TORNADO)
@@ -90,7 +88,7 @@ def last_period(
     letters = [(row.frequency_hz, row.m) for row in base if row.description == "Eq. (1)" and row.m > 1]
     places = [("single_mode", frequency_of(scene, m), m) for m in IN_NOISE[run.quick]]
     places += [("beam", f, m) for f, m in letters[-2 if run.quick else 0 :]]
-    noisy = [(DESCRIPTIONS[name], strobed_at(name, scene, f, model), m) for name, f, m in places]
+    noisy = [(changes.DESCRIPTIONS[name], strobed_at(name, scene, f, model), m) for name, f, m in places]
     found = run.attempt(partial(clouds_of, noises), noisy, "periods in noise")
     clouds = [row for row in found if row]
     kinds = [noise.name for noise in noises]
@@ -109,7 +107,7 @@ def last_period(
 
 def pair_intervals(scene: Scene, run: Run) -> list[pairs.Interval]:
     """The free periods at which the letter's pairs are born, and the answer to what they say of T."""
-    if not run.of_the_letter:
+    if not run.letters:
         return []
     intervals_of = partial(pairs.intervals_of, single_mode_at(scene, FREQUENCY_HZ))
     columns = run.map(intervals_of, pairs.EXCESSES[: 2 if run.quick else None], "pairs")

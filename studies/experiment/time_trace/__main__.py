@@ -38,15 +38,7 @@ from studies.experiment.time_trace.model import Peak, close_up, lines_of, peaks_
 from studies.physics.descriptions import word
 from studies.shell.film import MOST_FRAMES
 from studies.shell.run import Verdict
-from studies.shell.scene import (
-    Scene,
-    beam_at,
-    corresponding,
-    harmonic,
-    model_of,
-    periods_of,
-    require_drive_below,
-)
+from studies.shell.scene import Scene, beam_at, corresponding, harmonic, model_of, require_drive_below
 from studies.shell.study import Run, study
 
 ORBIT_PERIODS = 2
@@ -116,13 +108,12 @@ def time_trace(
     )
     amplitude_m = oscillator.driven.amplitude
     size_g = amplitude_m * oscillator.driven.angular_frequency**2 / g
-    base = f"base {1e3 * amplitude_m:.4g} mm, {size_g:.3g} g"
-    run.say(f"{drive_hz:g} Hz, excess {excess:g}, {base}: {name}")
+    run.say(f"{drive_hz:g} Hz, excess {excess:g}, base {1e3 * amplitude_m:.4g} mm, {size_g:.3g} g: {name}")
     filmed = dict[str, object]()
     if film:
         words = f"{name}, {drive_hz:g} Hz, excess {excess:g}"
         filmed["film"] = filming.film(scene, run, oscillator, settled, trace, words, frames=frames)
-    seen = periods_of(scene).get(drive_hz) if excess == letter.TIME_TRACE_EXCESS else None
+    seen = letter.PERIODS.get(drive_hz) if run.letters and excess == letter.TIME_TRACE_EXCESS else None
     if seen == letter.PERIODS[letter.TIME_TRACE_HZ]:
         judge(run, name, seen, trace.collisions, peaks)
     return {

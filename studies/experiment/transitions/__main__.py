@@ -158,8 +158,9 @@ def compare(run: Run, rows: Sequence[Transition], parameters: Sequence[Extracted
     text = (
         "Eq. (1) with the restitution and delay of the beam's collisions has the beam's period at "
         f"{len(same)} of {len(found)} frequencies, and the map with that restitution at {of_map}. Its orbits "
-        f"end where the beam's do, to a factor of {NEARLY:g}, at {close}. Elsewhere higher modes still ring "
-        "when the tip comes back, which no restitution and no delay of a first collision contain."
+        f"end where the beam's do, to a factor of {NEARLY:g}, at {close}."
+        + " Elsewhere higher modes still ring when the tip comes back, which no restitution and no delay of "
+        "a first collision contain." * (close < len(found))
     )
     run.answer("two_parameters", text)
     verdict: Verdict = "agrees" if close == len(found) else "in part" if same else "differs"

@@ -263,7 +263,7 @@ def where_to_measure(
     run.table("next", chosen, "The five best.", of=Measurement, show=BEST)
     if found:
         run.figure("next", figure.draw_plane(found, plan), figure.PLANE)
-    if run.of_the_letter:
+    if run.letters:
         letters = letter_rows(of, plan)
         run.table("letter_orbits", letters, "The same by the letter's orbits.", of=LetterOrbits)
         if plan.names == Plan().names:

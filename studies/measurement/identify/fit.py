@@ -175,8 +175,8 @@ def _judged(problem: Problem, found: Any, oscillator: ImpactOscillator, known: b
     lengths[lengths == 0.0] = 1.0
     _u, singular, axes = np.linalg.svd(found.jac / lengths, full_matrices=False)
     if not singular[-1] > SINGULAR * singular[0]:
-        cannot = _cannot(_blind(axes[:, own], names))
-        raise InvalidValue(f"{cannot}: fit fewer parameters or another record")
+        blind = _blind(axes[:, own], names)
+        raise InvalidValue(f"the record cannot {blind}: fit fewer parameters or another record")
     axes = axes / lengths
     covariance = (axes.T / singular**2 @ axes * spread**2)[np.ix_(own, own)]
     slopes = problem.slopes(found.x)[own]
@@ -201,20 +201,16 @@ def _judged(problem: Problem, found: Any, oscillator: ImpactOscillator, known: b
     share = np.sqrt(np.diag(covariance)) / most
     if not result.too_small and np.any(share > 1.0):  # else `report` says so
         worst, blind = names[int(np.argmax(share))], _blind(axes[:, own], names)
-        cannot = _cannot(blind if worst in blind else [worst])
-        raise InvalidValue(f"{cannot}: the standard error of {worst} is above its value")
+        blind = blind if worst in blind.split() else f"determine {worst}"
+        raise InvalidValue(f"the record cannot {blind}: the standard error of {worst} is above its value")
     return result
 
 
-def _blind(axes: Array, names: Sequence[str]) -> list[str]:
+def _blind(axes: Array, names: Sequence[str]) -> str:
     """The parameters of the last axis, which a record cannot separate or determine."""
     share = np.abs(axes[-1])
-    return [name for name, part in zip(names, share, strict=True) if part > PART * share.max()]
-
-
-def _cannot(blind: Sequence[str]) -> str:
-    """What a record cannot do for these parameters."""
-    return f"the record cannot {'tell' if len(blind) > 1 else 'determine'} {' from '.join(blind)}"
+    blind = [name for name, part in zip(names, share, strict=True) if part > PART * share.max()]
+    return f"tell {' from '.join(blind)}" if len(blind) > 1 else f"determine {blind[0]}"
 
 
 def _chance(residuals: Array, prediction: Prediction, known: bool, freedom: int) -> float:

@@ -255,23 +255,13 @@ def corresponding(scene: Scene, letter_hz: float) -> float:
 
 
 def of_the_letter(scene: Scene) -> bool:
-    """Whether the scene is a spring of the letter by its numbers: what the letter says is held against no
-    other.
-
-    T and mu of [single_mode] and T of the first mode of the spring are the printed ones, and Eq. (1) grazes
-    about at the typical amplitude.
-    """
-    keys, measured = scene.single_mode, scene.modal_data.frequencies_hz
-    if scene.drive.kind != "harmonic" or corresponding(scene, 1.0) != 1.0:
-        return False
+    """Whether T and mu, T of the spring's first mode, and roughly the drive amplitude are the letter's."""
+    measured, printed = scene.modal_data.frequencies_hz, letter.BREAKDOWN
     first = 1.0 / min(measured) if scene.spring.kind == "modal_data" else free_period(scene)
+    rate = scene.single_mode.decay_rate_per_s - printed["decay_rate_per_s"]
     size = single_mode_at(scene, letter.TIME_TRACE_HZ).grazing_amplitude() / letter.DRIVE_AMPLITUDE_M
-    rate, error = (letter.BREAKDOWN[f"decay_rate{key}_per_s"] for key in ("", "_error"))
-    return (
-        abs(first / letter.FREE_PERIOD_S - 1.0) <= SAME_SPRING
-        and abs(keys.decay_rate_per_s - rate) <= error
-        and 1.0 / TYPICAL <= size <= TYPICAL
-    )
+    same = corresponding(scene, 1.0) == 1.0 and abs(first / letter.FREE_PERIOD_S - 1.0) <= SAME_SPRING
+    return same and abs(rate) <= printed["decay_rate_error_per_s"] and 1.0 / TYPICAL <= size <= TYPICAL
 
 
 def periods_of(scene: Scene) -> Mapping[float, int]:
