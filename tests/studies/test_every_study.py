@@ -170,7 +170,7 @@ def test_where_nothing_is_found_a_study_says_so(tmp_path, letter_scene, capsys):
     run = Run(study="hysteresis", folder=tmp_path, scene=letter_scene, command="")
     judge(run, [], {}, Causes(at="", **{name: None if "map" in name else 1.0 for name in CAUSES}))
     assert "nothing to compare" in capsys.readouterr().err and not run.close("done", {})["verdicts"]
-    # with one mode, of higher ones
+    # nor of higher modes with one mode
     off = {name: Accuracy(description=name, folds=1, median=1.0, worst=1.0) for name in DESCRIPTIONS}
     judge(run, [], off, Causes(at="", **dict.fromkeys(CAUSES, 1.0)), higher=False)
     kept = run.close("done", {})

@@ -27,6 +27,7 @@ from typing import Annotated
 
 from studies.experiment.last_period import changes, pairs
 from studies.experiment.last_period.causes import Effect, causes_of, effect_of
+from studies.experiment.last_period.changes import DESCRIPTIONS, changes_of, transitions_after, transitions_at
 from studies.experiment.last_period.clouds import Clouds, clouds_of, frequency_of
 from studies.letter import AMPLITUDE_STABILITY, PERIODS
 from studies.physics.descriptions import strobed_at
@@ -59,17 +60,11 @@ def last_period(
     model, frequencies = model_of(scene), sorted(scene.drive.frequencies_hz)
 
     base = [
-        row
-        for rows in run.map(partial(changes.transitions_at, scene, model), frequencies, "now")
-        for row in rows
+        row for rows in run.map(partial(transitions_at, scene, model), frequencies, "now") for row in rows
     ]
-    after = run.attempt(
-        partial(changes.transitions_after, scene, base), changes.changes_of(scene, run.quick), "changes"
-    )
+    after = run.attempt(partial(transitions_after, scene, base), changes_of(scene, run.quick), "changes")
     rows = base + [row for found in after for row in found or ()]
-    run.table(
-        "sensitivity", rows, "Born period and fold after each change of one parameter.", of=changes.Transition
-    )
+    run.table("sensitivity", rows, "Born period and fold after each change.", of=changes.Transition)
     from studies.experiment.last_period import figure  # matplotlib is slow to import
 
     run.figure("fold_against_parameter", figure.draw_tornado(rows), figure.TORNADO)
@@ -88,7 +83,7 @@ def last_period(
     letters = [(row.frequency_hz, row.m) for row in base if row.description == "Eq. (1)" and row.m > 1]
     places = [("single_mode", frequency_of(scene, m), m) for m in IN_NOISE[run.quick]]
     places += [("beam", f, m) for f, m in letters[-2 if run.quick else 0 :]]
-    noisy = [(changes.DESCRIPTIONS[name], strobed_at(name, scene, f, model), m) for name, f, m in places]
+    noisy = [(DESCRIPTIONS[name], strobed_at(name, scene, f, model), m) for name, f, m in places]
     found = run.attempt(partial(clouds_of, noises), noisy, "periods in noise")
     clouds = [row for row in found if row]
     kinds = [noise.name for noise in noises]
