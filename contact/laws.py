@@ -111,9 +111,9 @@ class DelayedRestitution(ContactLaw):
     For one mode only: there the two numbers say all that a collision does.  The wait is kept whatever pulls
     at the tip.  Without the wall it would be back after 2 v/a, a its deceleration at the touch: a longer wait
     holds it against that pull and gives the motion energy, so that orbits of period 1 appear far below
-    grazing (stable ones if the wait is long, ``tests/test_delayed_orbits.py``).  With a constant delay every
-    touch slower than a `delay`/2 is of this kind, and one of vanishing speed is no graze; a delay that falls
-    at least as fast as the speed has none.
+    grazing (stable ones if the wait is long, ``tests/contact/test_delayed_orbits.py``).  With a constant
+    delay every touch slower than a `delay`/2 is of this kind, and one of vanishing speed is no graze; a delay
+    that falls at least as fast as the speed has none.
 
     Parameters
     ----------

@@ -42,10 +42,11 @@ def coefficients(
     damped, damped_low = damped_frequency(omega, decay_rate)
     n11, n12, _, n22 = flow_matrix(omega, decay_rate, damped, damped_low, 1.0 / drive_frequency)
     turns = damped / (2.0 * math.pi * drive_frequency) if omega > 0.5 * decay_rate else 0.0
+    own = damped / (2.0 * math.pi)
     require(
         n12 > 0.0,
-        f"drive_frequency is {drive_frequency} Hz, where 1/(f T) is {turns:.6g}; the fractional part of "
-        "1/(f T) must lie between 0 and 1/2, as it does for 2/3 < f T < 1",
+        f"drive_frequency is {drive_frequency:g} Hz, the mode swings at {own:.6g} Hz; the map has p_m below "
+        f"resonance, from {own / 1.5:.6g} to {own:.6g} Hz",
     )
     delay_term = delay / (2.0 * n12 * (1.0 + restitution) ** 2)
     return n11 + n22, math.exp(-decay_rate / drive_frequency), delay_term, math.floor(turns)

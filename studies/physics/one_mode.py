@@ -12,10 +12,7 @@ from collections.abc import Iterator
 from contact import first_collision
 from studies.physics.descriptions import or_none
 from studies.physics.least_model import TRACE_EXCESS, middle_of
-from studies.shell.scene import OPEN, Scene, beam_at, beyond_linear, first_mode
-
-SAME_SPRING = 0.005
-"""Relative difference of two free periods beyond which the born period changes next to a band edge."""
+from studies.shell.scene import OPEN, SAME_SPRING, Scene, beam_at, beyond_linear, first_mode
 
 SAME_DECAY = 0.05
 """Relative difference of two decay rates beyond which the second digit of a fold changes."""

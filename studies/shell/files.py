@@ -93,19 +93,16 @@ def json_text(value: object, *, indent: int | None = 2) -> str:
     return json.dumps(plain(value), indent=indent, allow_nan=False, ensure_ascii=False)
 
 
-def columns_of(rows: Sequence[object]) -> list[str]:
-    """The names of the columns of a table whose rows are instances of one dataclass."""
-    kinds = {type(row) for row in rows}
-    if len(kinds) != 1 or not dataclasses.is_dataclass(rows[0]):
-        raise TypeError(
-            f"a table needs rows of one dataclass, at least one, not {[kind.__name__ for kind in kinds]}"
-        )
-    return [entry.name for entry in dataclasses.fields(rows[0])]
+def columns_of(kind: type, rows: Sequence[object]) -> list[str]:
+    """The names of the columns of a table whose rows, if there are any, are instances of one dataclass."""
+    if not dataclasses.is_dataclass(kind) or {type(row) for row in rows} - {kind}:
+        raise TypeError(f"a table needs rows of one dataclass, {kind.__name__}, not {set(map(type, rows))}")
+    return [entry.name for entry in dataclasses.fields(kind)]
 
 
-def csv_text(rows: Sequence[object]) -> str:
+def csv_text(kind: type, rows: Sequence[object]) -> str:
     """A table of rows, headings first; empty cells for None and not a number, JSON for lists and mappings."""
-    names, stream = columns_of(rows), io.StringIO(newline="")
+    names, stream = columns_of(kind, rows), io.StringIO(newline="")
     writer = csv.writer(stream, lineterminator="\n")
     writer.writerow(names)
     for row in rows:

@@ -18,7 +18,7 @@ from concurrent.futures import Executor
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
-from functools import partial
+from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal, TypeVar
 
@@ -42,7 +42,7 @@ from studies.shell.files import (
     versions,
     write_atomically,
 )
-from studies.shell.scene import Scene
+from studies.shell.scene import Scene, of_the_letter
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -173,15 +173,13 @@ class Run:
         return write_atomically(self.path(f"{name}.npz"), stream.getvalue())
 
     def table(
-        self, name: str, rows: Sequence[object], caption: str = "", *, show: Sequence[str] | None = None
+        self, name: str, rows: Sequence[T], caption: str = "", *, of: type, show: Sequence[str] | None = None
     ) -> Path:
-        """NAME.csv of rows of one dataclass; on the terminal the columns `show` (all by default)."""
+        """NAME.csv of rows of the dataclass `of`; on the terminal the columns `show` (all by default)."""
         from rich.console import Console
         from rich.table import Table
 
-        if not rows:  # every cell failed
-            return self.text(f"{name}.csv", "")
-        shown = list(columns_of(rows) if show is None else show)
+        shown = list(columns_of(of, rows) if show is None else show)
         if shown:
             table = Table(title=caption or None, title_justify="left", box=None, pad_edge=False)
             for column in shown:
@@ -193,7 +191,7 @@ class Run:
                 table
             )
         self._captions[f"{name}.csv"] = caption
-        return self.text(f"{name}.csv", csv_text(rows))
+        return self.text(f"{name}.csv", csv_text(of, rows))
 
     def figure(self, name: str, figure: Figure, caption: str = "") -> None:
         """NAME.png and NAME.pdf; the caption is what the page writes below it."""
@@ -209,19 +207,24 @@ class Run:
         self.say(self.failures[-1])
 
     def verdict(self, point: str, verdict: Verdict, *, found: str, note: str = "") -> None:
-        """What was found of a point of the letter (`letter.POINTS`), and a sentence on it.
+        """What was found of a point of the letter (`letter.POINTS`), if the spring is the letter's.
 
         "fitted": the scene was calibrated to that number; "not printed": the letter gives none to compare.
         """
         if point not in letter.POINTS or letter.POINTS[point].study != self.study:
             raise KeyError(f"{self.study} judges no point {point!r} of letter.POINTS")
-        self._verdicts[point] = {"verdict": verdict, "found": found, "note": note}
+        self._verdicts |= {point: {"verdict": verdict, "found": found, "note": note}} if self.letters else {}
 
     def answer(self, question: str, text: str) -> None:
-        """The answer, or this study's part of it, to a question of `letter.QUESTIONS`."""
+        """The answer, or a part of it, to a question of `letter.QUESTIONS`, if the spring is the letter's."""
         if question not in letter.QUESTIONS or self.study not in letter.QUESTIONS[question][1]:
             raise KeyError(f"{self.study} answers no question {question!r} of letter.QUESTIONS")
-        self._answers[question] = text
+        self._answers |= {question: text} if self.letters else {}
+
+    @cached_property
+    def letters(self) -> bool:
+        """Whether the scene is a spring of the letter."""
+        return of_the_letter(self.scene)
 
     @property
     def wall_time(self) -> float:

@@ -36,7 +36,7 @@ def calibrate(scene: Scene, run: Run) -> Mapping[str, object]:
     targets = Targets.of(harmonic(scene))
     fitted = calibrate_all(scene, targets)
     rows = [Fitted(key=key, before=scene.number(key), after=fitted.number(key)) for key in KEYS]
-    run.table("keys", rows, "Keys before and after the fit.")
+    run.table("keys", rows, "Keys before and after the fit.", of=Fitted)
     run.text("calibrated.toml", fitted.dump())
     collision = collision_at(fitted, targets.frequency_hz, targets.excess)
     amplitude = beam_at(fitted, targets.frequency_hz).grazing_amplitude()

@@ -70,7 +70,7 @@ def modes(
     rows = rows_of(scene, solved)
     if mode > len(rows):
         raise SceneError(f"--mode must be at most {len(rows)}, the modes of this scene, not {mode}")
-    run.table("modes", rows, "Natural modes: f, c, phi [kg^(-1/2)], Gamma [kg^(1/2)].")
+    run.table("modes", rows, "Natural modes: f, c, phi [kg^(-1/2)], Gamma [kg^(1/2)].", of=Row)
     if solved is None:
         run.say("measured modes have no shapes: nothing to draw or to look at in ParaView")
     else:

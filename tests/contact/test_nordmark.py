@@ -219,6 +219,11 @@ def test_map_of_an_oscillator() -> None:
     assert NordmarkMap.from_oscillator(oscillator, restitution=0.4) == letter_map(21.5, restitution=0.4)
 
 
+def test_above_resonance_the_map_is_refused_with_the_frequencies_below_it() -> None:
+    with pytest.raises(ValueError, match=rf"from {1 / (1.5 * T):.6g} to {1 / T:.6g} Hz"):
+        letter_map(1.2 / T)
+
+
 def test_a_map_without_a_steady_motion_has_no_excess() -> None:
     with pytest.raises(ValueError, match="alpha"):
         _ = NordmarkMap(alpha=-1.8, gamma=0.8, restitution=0.1).rho_per_excess

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 from contact import LinearContact, NewtonRestitution
-from studies.experiment.effective_impact.model import Approach, Spring, floor_of, on_orbits
+from studies.experiment.effective_impact.model import Approach, Spring, cases_of, floor_of, on_orbits
 from studies.letter import TIME_TRACE_EXCESS
 from studies.physics.calibration import bare_cantilever
-from studies.shell.scene import approach_speed, hertz_of, read_scene
+from studies.shell.scene import approach_speed, beam_at, hertz_of, read_scene
 
 pytestmark = pytest.mark.filterwarnings("ignore::beam.SuspiciousValue")
 """Calibration tries springs that nobody would build."""
@@ -91,6 +91,15 @@ def test_a_settled_orbit_has_its_collision_in_every_period():
     assert row.restitution == pytest.approx(0.0710, abs=1e-3)
     below = replace(case, oscillator=case.oscillator.with_excess(-0.01)).measured()
     assert below.orbit_period == 1 and math.isnan(below.kick) and on_orbits([below]) == []
+
+
+def test_other_tip_masses_keep_the_drive_amplitude_and_are_in_hertz_contact_only():
+    narrow = LETTER.replace({"stop.gap_m": 0.006})
+    own, heavy = (Spring.of(narrow, FREQUENCY, 4, ratio) for ratio in (None, 0.5))
+    sizes = [beam_at(one.scene, FREQUENCY).grazing_amplitude() for one in (own, heavy)]
+    assert sizes[1] == pytest.approx(sizes[0], rel=1e-9)
+    newton = replace(own, scene=narrow.replace({"contact.law": "newton"}))
+    assert {case.row.curve for case in cases_of(newton, [heavy], own)} == {"speed", "reference"}
 
 
 # what is read off the curves, with rows made for it

@@ -10,8 +10,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from studies.experiment.hysteresis.__main__ import Causes, judge
-from studies.experiment.hysteresis.model import CAUSES
+from studies.experiment.hysteresis.__main__ import Accuracy, Causes, judge
+from studies.experiment.hysteresis.model import CAUSES, DESCRIPTIONS
 from studies.experiment.soft_wall.model import loss_of_stability
 from studies.measurement.identify import next_measurement
 from studies.methods.work_precision.problems import problems_of
@@ -170,6 +170,11 @@ def test_where_nothing_is_found_a_study_says_so(tmp_path, letter_scene, capsys):
     run = Run(study="hysteresis", folder=tmp_path, scene=letter_scene, command="")
     judge(run, [], {}, Causes(at="", **{name: None if "map" in name else 1.0 for name in CAUSES}))
     assert "nothing to compare" in capsys.readouterr().err and not run.close("done", {})["verdicts"]
+    # nor of higher modes with one mode
+    off = {name: Accuracy(description=name, folds=1, median=1.0, worst=1.0) for name in DESCRIPTIONS}
+    judge(run, [], off, Causes(at="", **dict.fromkeys(CAUSES, 1.0)), higher=False)
+    kept = run.close("done", {})
+    assert "two_parameters" not in kept["verdicts"] and "higher" not in kept["answers"]["hysteresis"]
 
 
 def test_a_p1_unstable_down_to_faint_touches_loses_its_stability_there(monkeypatch):

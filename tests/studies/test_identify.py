@@ -112,6 +112,12 @@ def test_noise_that_is_larger_than_it_is_said_to_be_is_noticed(made):
         assert fit(record, made["one_mode"], NAMES, noise=noise).too_small == (noise < 1e-6)
 
 
+def test_in_loud_noise_one_parameter_is_named_the_one_whose_error_is_above_its_value(made):
+    record = synthetic("strobe", made["one_mode"], seed=program.SEED)
+    with pytest.raises(ValueError, match=r"cannot determine (\w+): the standard error of \1 is above"):
+        fit(record, made["one_mode"], NAMES, noise=1e-3)
+
+
 @pytest.mark.parametrize(
     ("name", "kind", "names", "said"),
     [

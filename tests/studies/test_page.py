@@ -30,8 +30,8 @@ class Row:
 def stored(results: Path, scene: Scene, study: str = "transitions") -> Run:
     """Results of a study with a table, a figure, a verdict and a failed cell."""
     run = Run(study=study, folder=results / study, scene=scene, command=f"python -m studies {study} --quick")
-    run.table("rows", [Row("<b>bold</b>", 0.123456789)], "A caption & more", show=())
-    run.table("long", [Row("x", float(n)) for n in range(100)], show=())
+    run.table("rows", [Row("<b>bold</b>", 0.123456789)], "A caption & more", of=Row, show=())
+    run.table("long", [Row("x", float(n)) for n in range(100)], of=Row, show=())
     figure, axes = plotting.new_figure()
     axes.plot([0.0, 1.0], **plotting.series(0))
     run.figure("picture", figure, "What is drawn.")

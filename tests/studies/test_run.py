@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import csv
+import importlib
 import json
 import math
 import os
+import re
 import shlex
 import signal
 import subprocess
 import sys
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -23,7 +25,7 @@ from contact import NotPeriodic
 from studies import ROOT
 from studies.shell.files import write_atomically
 from studies.shell.programs import names, old_name, unknown
-from studies.shell.scene import Scene
+from studies.shell.scene import Scene, of_the_letter, read_scene
 from studies.shell.study import Run, study
 
 
@@ -72,7 +74,7 @@ def small(
         Row(number=n, value=None if n else np.float64(np.nan), word="a,b", good=n > 0, pair=(0.0, float(n)))
         for n in run.track(range(points), "rows")
     ]
-    run.table("rows", rows, "Rows.")
+    run.table("rows", rows, "Rows.", of=Row)
     run.arrays("numbers", x=np.arange(3.0))
     if fail:
         run.failed("cell 1", ValueError("no number"))
@@ -213,6 +215,30 @@ def test_what_a_study_may_not_store_is_refused(tmp_path, letter_scene):
         with pytest.raises(ValueError, match=name):
             run.close("done", {name: []})
     assert run.close("done", {})["verdicts"] == {"p3": {"verdict": "agrees", "found": "p3", "note": ""}}
+
+
+@pytest.mark.filterwarnings("ignore::beam.SuspiciousValue")
+def test_what_the_letter_says_is_kept_of_its_spring_only(tmp_path):
+    own = ["modes.count=3", "scan.points=5", "contact.law=newton", "single_mode.decay_rate_per_s=3.6"]
+    other = ["stop.gap_m=1e-6", "tip.mass_kg=0", "spring.thickness_m=7e-4", "single_mode.decay_rate_per_s=5"]
+    assert all(of_the_letter(read_scene(name)) for name in ("letter", "tight_fold", "measured_modes"))
+    assert [of_the_letter(read_scene("letter", [one])) for one in own + other] == [True] * 4 + [False] * 4
+    run = Run(study="transitions", folder=tmp_path, scene=read_scene("steel_ruler"), command="")
+    run.verdict("p3", "agrees", found="p3")
+    assert not run.close("done", {})["verdicts"] and not run.letters
+
+
+def test_each_table_has_the_heading_of_its_rows_even_without_rows(tmp_path, letter_scene):
+    run, calls = Run(study="transitions", folder=tmp_path, scene=letter_scene, command=""), 0
+    for path in (ROOT / "studies").rglob("*.py"):
+        for call in re.findall(r"run\.table\((?:[^()]|\([^()]*\))*\)", path.read_text()):
+            module = importlib.import_module(".".join(path.relative_to(ROOT).with_suffix("").parts))
+            kind, calls = eval(re.search(r"of=([\w.]+)", call)[1], vars(module)), calls + 1
+            heading = ",".join(entry.name for entry in fields(kind)) + "\n"
+            assert run.table("empty", [], of=kind, show=()).read_text() == heading
+    assert calls > 40
+    with pytest.raises(TypeError, match="rows of one dataclass"):
+        run.table("others", [calls], of=Row)
 
 
 def test_files_are_complete_or_absent(tmp_path, monkeypatch):

@@ -32,6 +32,12 @@ def test_all_descriptions_give_the_expected_period(letter_scene, letter_model, f
         assert born_period(strobed, 1e-3) == EXPECTED[frequency], name
 
 
+@pytest.mark.filterwarnings("ignore::beam.SuspiciousValue")
+def test_no_period_of_the_letter_stands_beside_another_spring():
+    scene = read_scene("steel_ruler")
+    assert [row.letter for row in rows_at(scene, 22.2, model_of(scene)).rows] == [None] * 4
+
+
 def test_eq_1_and_the_beam_show_p10_above_grazing_where_the_letter_did(letter_scene, letter_model):
     for name in ("single_mode", "beam"):
         assert born_period(strobed_at(name, letter_scene, 23.40, letter_model), 1e-2) == PERIODS[23.40]

@@ -85,7 +85,7 @@ def breakdown(
     taus = sorted({*(QUICK_RESTITUTIONS if run.quick else RESTITUTIONS), tau})
     islands = run.map(partial(island, scene), taus, "islands")
     known = [entry for entry, _ in islands]
-    run.table("islands", known, "Eq. (1): p3 and chaos below grazing.")
+    run.table("islands", known, "Eq. (1): p3 and chaos below grazing.", of=Island)
     calibrated = Spring(scene=scene, model=model_of(scene), tip_mass_kg=scene.tip.mass_kg)
     cells, with_6 = search(scene, run)
     jobs = [("Eq. (1)", single_mode(scene, tau)), ("beam", calibrated)]
@@ -99,7 +99,7 @@ def breakdown(
     # as in the letter: p3 in the downward scan; otherwise the first candidate
     candidates = [*(o for o in outcomes[2:] if o.p3_last is not None), *outcomes[2:]]
     found = candidates[0] if candidates else None
-    run.table("outcomes", outcomes, "What is born at grazing, and the end of the downward scan.")
+    run.table("outcomes", outcomes, "What is born at grazing, and the end of the downward scan.", of=Outcome)
     store(run, scans)
     from studies.experiment.breakdown import figure
 
@@ -127,7 +127,7 @@ def search(scene: Scene, run: Run) -> tuple[list[Cell], list[Spring]]:
     ]
     found = run.attempt(cell_of, springs, "search")
     cells = [cell for cell in found if cell is not None]
-    run.table("born_period", cells, "Period born at grazing over what the letter does not print.", show=())
+    run.table("born_period", cells, "Period born at grazing over unprinted values.", of=Cell, show=())
     with_6 = [one for one, cell in zip(springs, found, strict=True) if cell and cell.period == BORN_PERIOD]
     return cells, nearest_first(with_6, scene.tip.mass_kg)
 

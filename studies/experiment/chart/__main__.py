@@ -42,6 +42,7 @@ from studies.experiment.chart.model import (
     EXCESSES,
     FREQUENCIES_HZ,
     KNEE,
+    Fold,
     Plane,
     bands_in,
     column_at,
@@ -148,7 +149,7 @@ def drawn(
     else:
         folds = folds_of_beam(oscillator, edges, frequencies, lowest)
     run.arrays(f"chart_{model}", frequency_hz=frequencies, excess=excesses, **cells)
-    run.table(f"folds_{model}", folds, "Exact folds of p_m orbits with one impact.", show=())
+    run.table(f"folds_{model}", folds, "Exact folds of p_m orbits with one impact.", of=Fold, show=())
     title = f"{TITLES[model]}, {plane.columns} × {plane.rows}"
     run.figure(f"chart_{model}", draw(plane, cells, edges, folds, title), CAPTION)
     without = float(np.mean(cells["period"] == 0))
@@ -170,7 +171,7 @@ def cut(scene: Scene, run: Run, f: float) -> Mapping[str, object]:
         rows, strobes = rows + scan, strobes + recorded
         for reason in failures:
             run.failed("scan", reason)
-    run.table("cut", rows, "Settled motions; kind by the largest Lyapunov exponent.")
+    run.table("cut", rows, "Settled motions; kind by the largest Lyapunov exponent.", of=settled.Settlement)
     run.arrays("cut", points=np.array(strobes), excess=[row.excess for row in rows])
     run.figure("cut", figure.draw_scan(rows, strobes, f, scene.readout.quantity), figure.SCAN)
     wild = [row for row in rows if row.kind == settled.CHAOTIC]

@@ -35,6 +35,7 @@ from studies.experiment.claims.model import (
     SPAN,
     Born,
     Job,
+    Node,
     below_grazing,
     born_at,
     line_of,
@@ -94,7 +95,7 @@ def energy_loss(scene: Scene, run: Run) -> Mapping[str, object]:
     tau = np.linspace(0.0, 0.9, restitutions)
     plane = run.map(partial(below_grazing, scene, frequencies.tolist()), tau.tolist(), "plane of f and tau")
     below = np.array([part for part, _ in plane])
-    run.table("loss", rows, "Fold and first bifurcation of p_m, F/F_g - 1.", show=())
+    run.table("loss", rows, "Fold and first bifurcation of p_m, F/F_g - 1.", of=Node, show=())
     run.figure("loss", figure.draw_loss(rows, tau, below), figure.LOSS)
     found = trends(rows)
     both = found["map"] and found["eq1"]
@@ -132,9 +133,7 @@ def universality(scene: Scene, run: Run, *, positions: int) -> Mapping[str, obje
     from studies.experiment.claims import figure
 
     rows, excess = born_everywhere(scene, run, positions), scene.scan.born_excess
-    run.table(
-        "universality", rows, "Period born just above grazing, and that of the map as rho -> 0+.", show=()
-    )
+    run.table("universality", rows, "Born period, and that of the map as rho -> 0+.", of=Born, show=())
     run.figure("universality", figure.draw_born(scene, rows), figure.BORN)
     failed = any(row.period is None for row in rows)
     agree = {

@@ -72,16 +72,16 @@ def effective_impact(scene: Scene, run: Run) -> Mapping[str, object]:
     masses = run.map(partial(Spring.of, scene, frequency, modes), MASS_RATIOS[::every], "springs")
     found = run.attempt(Case.measured, cases_of(spring, masses, reference, every), "collisions")
     rows = [row for row in found if row is not None]
-    run.table("collisions", rows, show=())
+    run.table("collisions", rows, of=Approach, show=())
     searches = [select(rows, "search", name) for name in series_of(rows, "search")]
     floors = [floor for search in searches if (floor := floor_of(search)) is not None]
-    run.table("floors", floors, "Smallest restitution over the tip mass, by local restitution.")
+    run.table("floors", floors, "Smallest restitution over the tip mass, by local restitution.", of=Floor)
     from studies.experiment.effective_impact import figure  # matplotlib is slow to import
 
-    for draw in (figure.speed, figure.mass):
+    for draw in (figure.speed, figure.mass) if select(rows, "mass") else (figure.speed,):
         run.figure(draw.__name__, draw(rows), " ".join((draw.__doc__ or "").split()))
     quoted = next(iter(select(rows, "reference")), None)
-    if quoted is not None and any(floor.local_restitution == 1.0 for floor in floors):
+    if quoted is not None and quoted.returns and any(floor.local_restitution == 1.0 for floor in floors):
         judge(run, quoted, on_orbits(rows), floors)
     return {
         "rows": rows,
@@ -99,15 +99,15 @@ def judge(run: Run, at: Approach, orbits: Sequence[Approach], floors: Sequence[F
     returned = [orbit.restitution for orbit in orbits if orbit.returns]
     lost = len(orbits) - len(returned)
     span = f"{min(returned):.2f} to {max(returned):.2f}" if returned else "none"
+    span += f" (in {lost} of {len(orbits)} mode 1 does not come back to the gap)" if lost else ""
     reached = lost > 0 or min(returned, default=math.inf) <= letter.RESTITUTION
     verdict: Verdict = "in part" if reached else "differs"
     run.verdict(
         "restitution",
         "agrees" if least <= letter.RESTITUTION + NEAR else verdict,
         found=f"{least:.2f} at least in a first collision; {span} on settled orbits",
-        note="the time that the contact takes sets a floor which loss in the contact does not lower; on "
-        f"settled orbits the ringing of the collision before moves the touch, and in {lost} of {len(orbits)} "
-        "mode 1 does not come back to the gap",
+        note=f"{lossy:.2f} at least with any loss in the contact; on settled orbits the ringing of the "
+        "collision before moves the touch",
     )
     delay, share = f"{1e3 * at.delay_s:.3f} ms", f"{at.delay_s / at.arc_s:.2f} of the time"
     note = f"{share} v/a in which the tip would turn by itself"
@@ -117,6 +117,6 @@ def judge(run: Run, at: Approach, orbits: Sequence[Approach], floors: Sequence[F
         f"In a first collision at excess {at.excess:g} the higher modes leave mode 1 a restitution of "
         f"{at.restitution:.3f}, and of {least:.3f} at least over the mass of the ball ({lossy:.3f} with any "
         f"loss in the contact): a floor that the contact time of {1e6 * at.contact_s:.0f} µs sets. On "
-        f"settled orbits, where the collision before still rings, it is {span}, or does not exist. The "
-        f"delay is {delay}, {share} in which the tip would turn by itself.",
+        f"settled orbits, where the collision before still rings, it is {span}. The delay is "
+        f"{delay}, {share} in which the tip would turn by itself.",
     )

@@ -39,7 +39,7 @@ from contact import (
 )
 from contact.orbits import born
 from studies.letter import TIME_TRACE_EXCESS, TIME_TRACE_HZ
-from studies.physics.calibration import leaf_mass, with_mass_ratio
+from studies.physics.calibration import calibrate_gap, leaf_mass, with_mass_ratio
 from studies.shell.scene import (
     Scene,
     approach_speed,
@@ -152,7 +152,8 @@ class Spring:
         """The spring of a scene with this many modes; with another tip mass, `mass_ratio` times the leaf, if
         that is given."""
         if mass_ratio is not None:
-            scene = with_mass_ratio(scene, mass_ratio, frequency)
+            amplitude = beam_at(scene, frequency).grazing_amplitude()
+            scene = calibrate_gap(with_mass_ratio(scene, mass_ratio, frequency), amplitude, frequency)
         return Spring(scene=scene, model=model_of(scene.replace({"modes.count": modes})), frequency=frequency)
 
     @property
@@ -192,7 +193,8 @@ class Spring:
 
 
 def cases_of(spring: Spring, masses: Sequence[Spring], fine: Spring, every: int = 1) -> Iterator[Case]:
-    """Every case, or every `every`-th of a curve: of the spring, with other tip masses, on a finer mesh."""
+    """Every case, or every `every`-th of a curve: of the spring, on a finer mesh and, if the law of the scene
+    is Hertz's, with other tip masses."""
     own, hertz = contact_law_of(spring.scene), hertz_of(spring.scene)
     other: list[tuple[str, Spring, ContactLaw]] = [] if own == hertz else [(OWN, spring, own)]
     lines = [*other, (HERTZ, spring, hertz), ("bare tip, Hertz", masses[0], hertz)]
@@ -201,7 +203,7 @@ def cases_of(spring: Spring, masses: Sequence[Spring], fine: Spring, every: int 
             yield one.case("speed", name, law, value=excess, excess=excess)
     yield fine.case("reference", HERTZ if own == hertz else OWN, own)
     orbit_hz = corresponding(spring.scene, TIME_TRACE_HZ)
-    for one in masses:
+    for one in masses if own == hertz else ():
         for excess in MASS_EXCESSES:
             yield one.case("mass", f"excess {excess:g}", hertz, excess=excess)
         yield one.case("orbit", f"{orbit_hz:.2f} Hz", hertz, frequency=orbit_hz)

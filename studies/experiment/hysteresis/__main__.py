@@ -113,21 +113,22 @@ def hysteresis(
         "hysteresis",
         rows,
         "Fold F_m/F_g - 1 of the orbits in nine descriptions.",
+        of=Folds,
         show=("frequency_hz", "m", *DESCRIPTIONS) if run.quick else (),
     )
     at_letter = [row for row in rows if seen.get(row.frequency_hz) == row.m]
     kept = resolved(rows)
     causes = [causes_over([row], f"{row.frequency_hz:.2f} Hz, p{row.m}") for row in at_letter]
     causes.append(causes_over(kept, f"median of {len(kept)} folds"))
-    run.table("causes", causes, "What each cause multiplies the hysteresis by, from the map to the beam.")
+    run.table("causes", causes, "Factor of each cause, from the map to the beam.", of=Causes)
     off = [accuracy(name, kept) for name in DESCRIPTIONS if name != "beam"]
-    run.table("accuracy", off, "Factor by which the hysteresis of a description differs from the beam's.")
+    run.table("accuracy", off, "Hysteresis of a description against the beam's, factor.", of=Accuracy)
     from studies.experiment.hysteresis import figure  # matplotlib is slow to import
 
     run.figure("hysteresis", figure.draw_curves(scene, rows), figure.CURVES)
-    judge(run, rows, {found.description: found for found in off}, causes[-1])
+    judge(run, rows, {found.description: found for found in off}, causes[-1], higher=model.n_modes > 1)
     within = [row for found in run.map(partial(inside_band, scene, inside), BANDS, "bands") for row in found]
-    run.table("bands", within, "Hysteresis 1 - F_m/F_g across the bands of p_m.", show=())
+    run.table("bands", within, "Hysteresis 1 - F_m/F_g across the bands of p_m.", of=Inside, show=())
     run.figure("bands", figure.draw_bands(scene, path_of(scene)), figure.BANDS)
     return {
         "rows": rows,
@@ -162,28 +163,30 @@ def accuracy(description: str, rows: Sequence[Folds]) -> Accuracy:
     )
 
 
-def judge(run: Run, rows: Sequence[Folds], off: Mapping[str, Accuracy], median: Causes) -> None:
-    """The answer, and the verdicts on Fig. 3 and the two parameters."""
+def judge(
+    run: Run, rows: Sequence[Folds], off: Mapping[str, Accuracy], median: Causes, *, higher: bool = True
+) -> None:
+    """The answer, and the verdicts on Fig. 3 and, if there are `higher` modes, on the two parameters."""
     factors = {name: value for name in CAUSES if (value := getattr(median, name)) is not None}
     if "truncation_of_the_map" not in factors:
         run.say("no p_m has a fold in the map, Eq. (1) and the beam: there is nothing to compare")
         return
+    own, two = factors["truncation_of_the_map"], off["two_parameters"]
     up, down = max(factors, key=factors.__getitem__), min(factors, key=factors.__getitem__)
     run.answer(
         "hysteresis",
-        "The map has the periods and the bands, not the size of the hysteresis. The difference is a product "
+        f"The map's hysteresis is off the beam's by a factor of {off['map']}. The difference is a product "
         f"of causes: in the median the {up.replace('_', ' ')} multiplies the hysteresis by "
-        f"{factors[up]:.2f}, the {down.replace('_', ' ')} by {factors[down]:.2f}. The letter's two "
-        f"parameters represent the higher modes up to a factor of {off['two_parameters']}, which is the "
-        "ringing that has not decayed when the tip comes back.",
+        f"{factors[up]:.2f}, the {down.replace('_', ' ')} by {factors[down]:.2f}."
+        + f" The letter's two parameters represent the higher modes up to a factor of {two}, which is the "
+        "ringing that has not decayed when the tip comes back." * higher,
     )
-    own = factors["truncation_of_the_map"]
     run.verdict(
         "hysteresis",
         "in part" if max(own, 1.0 / own) > NEARLY else "agrees",
         found=f"map off by {off['map'].median:.2f}, Eq. (1) by {off['single_mode'].median:.2f}",
-        note="the letter prints curves, no values; the beam differs from the map as the experiment did, but "
-        f"a factor of {own:.2f} (median) is the map's own truncation, with no higher mode in it",
+        note=f"the letter prints curves, no values; a factor of {own:.2f} (median) is the map's own "
+        "truncation, with no higher mode in it",
     )
     present = {(row.m, row.frequency_hz) for row in rows if row.beam_admissible and (row.beam or 0.0) < 0.0}
     beside = [f"p{m} at {f:.2f} Hz" for m, f in sorted(present) if (m - 1, f) in present]
@@ -194,7 +197,8 @@ def judge(run: Run, rows: Sequence[Folds], off: Mapping[str, Accuracy], median: 
             found=f"{len(beside)} orbits beside p_m of one less",
             note=", ".join(beside),
         )
-    two = off["two_parameters"]
+    if not higher:
+        return
     verdict: Verdict = "in part" if two.median <= 2.0 * NEARLY else "differs"
     run.verdict(
         "two_parameters",

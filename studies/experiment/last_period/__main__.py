@@ -25,21 +25,20 @@ from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import Annotated
 
-from studies.experiment.last_period import pairs
+from studies.experiment.last_period import changes, pairs
 from studies.experiment.last_period.causes import Effect, causes_of, effect_of
 from studies.experiment.last_period.changes import DESCRIPTIONS, changes_of, transitions_after, transitions_at
 from studies.experiment.last_period.clouds import Clouds, clouds_of, frequency_of
 from studies.letter import AMPLITUDE_STABILITY, PERIODS
 from studies.physics.descriptions import strobed_at
 from studies.physics.drive_noise import DriveNoise
-from studies.shell.scene import Scene, SceneError, corresponding, harmonic, model_of, single_mode_at
+from studies.shell.scene import Scene, SceneError, harmonic, model_of, single_mode_at
 from studies.shell.study import Run, study
 
 HIGHEST = max(PERIODS.values())
 """m of the last transition that the letter saw."""
 
-FREQUENCY_HZ = 22.20
-"""The letter's p5: a scene that has it there describes the letter's spring."""
+FREQUENCY_HZ = 22.20  # the letter's p5
 
 IN_NOISE = range(3, 17), range(8, 12)
 """m of Eq. (1) in noise: the full form, the small one."""
@@ -65,7 +64,7 @@ def last_period(
     ]
     after = run.attempt(partial(transitions_after, scene, base), changes_of(scene, run.quick), "changes")
     rows = base + [row for found in after for row in found or ()]
-    run.table("sensitivity", rows, "Born period and fold after each change of one parameter.")
+    run.table("sensitivity", rows, "Born period and fold after each change.", of=changes.Transition)
     from studies.experiment.last_period import figure  # matplotlib is slow to import
 
     run.figure("fold_against_parameter", figure.draw_tornado(rows), figure.TORNADO)
@@ -75,8 +74,9 @@ def last_period(
     run.table(
         "p10",
         effects,
-        "Period born at the letter's last frequency at excess 2.5e-4, 1e-3, 4e-3 and 1e-2, "
+        "Period born at the letter's last f T at excess 2.5e-4, 1e-3, 4e-3 and 1e-2, "
         "how many of its other five are; excesses with p10 and with all six.",
+        of=Effect,
     )
     intervals = pair_intervals(scene, run)
 
@@ -88,7 +88,7 @@ def last_period(
     clouds = [row for row in found if row]
     kinds = [noise.name for noise in noises]
     caption = f"p_m at an excess of 1e-3 in noise ({', '.join(kinds)}): distances of clouds over their width."
-    run.table("clouds", clouds, caption)
+    run.table("clouds", clouds, caption, of=Clouds)
     merged = judge(run, kinds, effects, clouds)
     return {
         "rows": rows,
@@ -102,12 +102,12 @@ def last_period(
 
 def pair_intervals(scene: Scene, run: Run) -> list[pairs.Interval]:
     """The free periods at which the letter's pairs are born, and the answer to what they say of T."""
-    if corresponding(scene, FREQUENCY_HZ) != FREQUENCY_HZ:
+    if not run.letters:
         return []
     intervals_of = partial(pairs.intervals_of, single_mode_at(scene, FREQUENCY_HZ))
     columns = run.map(intervals_of, pairs.EXCESSES[: 2 if run.quick else None], "pairs")
     rows = [row for column in columns for row in column]
-    run.table("pairs", rows, "Free periods at which the letter's six pairs are born.", show=())
+    run.table("pairs", rows, "Free periods with the letter's six pairs.", of=pairs.Interval, show=())
     if not run.quick:
         run.answer("period", pairs.sentence(rows))
     return rows

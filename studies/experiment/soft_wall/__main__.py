@@ -31,7 +31,7 @@ import numpy as np
 
 from studies import letter
 from studies.experiment.soft_wall.closed_forms import SoftWall
-from studies.experiment.soft_wall.model import Beam, Doubling, beam_of, doubling_of, kicks_of
+from studies.experiment.soft_wall.model import Beam, Doubling, Kick, beam_of, doubling_of, kicks_of
 from studies.shell.scene import Scene, SceneError, harmonic, single_mode_at
 from studies.shell.study import Run, study
 
@@ -68,13 +68,13 @@ def soft_wall(
     job = partial(beam_of, scene, excesses=np.geomspace(1e-7, 1e-1, 13 if run.quick else 37).tolist())
     (of_beam,) = run.attempt(job, [shown], "beam")
     beam, more = of_beam or (None, [])
-    run.table("kicks", [*kicks, *more], "Kick velocity of one collision [m/s].", show=())
-    run.table("doublings", doublings, "Excess F/F_g - 1 at which p1 doubles its period.")
+    run.table("kicks", [*kicks, *more], "Kick velocity of one collision [m/s].", of=Kick, show=())
+    run.table("doublings", doublings, "Excess F/F_g - 1 at which p1 doubles its period.", of=Doubling)
     from studies.experiment.soft_wall import figure  # matplotlib is slow to import
 
     run.figure("kick", figure.draw_kicks([*kicks, *more]), figure.KICKS)
     judge_wall(run, doublings)
-    if beam:
+    if beam and scene.contact.law == "hertz":
         judge_beam(run, beam)
     return {"rows": doublings, "beam": beam}
 

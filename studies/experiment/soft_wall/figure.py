@@ -14,8 +14,7 @@ from studies.shell.plotting import EXCESS, PAGE, in_house_style
 
 KICKS = (
     "Kick of one collision against the excess: points, closed form (line) and, dashed, the law of a soft "
-    "touch. All go over into the power 1/2 of a hard one, the beam below what the letter's drive could "
-    "resolve."
+    "touch. All go over into the power 1/2 of a hard one."
 )
 CASES = {"lossless": "Eq. (1), elastic wall: power 3/2", "beam": "beam, Hertz contact: power 2"}
 

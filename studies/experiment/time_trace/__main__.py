@@ -27,6 +27,8 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Annotated, Any
 
+from scipy.constants import g
+
 from beam import InvalidValue
 from contact import Collision, StroboscopicMap
 from contact.orbits import born
@@ -36,7 +38,7 @@ from studies.experiment.time_trace.model import Peak, close_up, lines_of, peaks_
 from studies.physics.descriptions import word
 from studies.shell.film import MOST_FRAMES
 from studies.shell.run import Verdict
-from studies.shell.scene import Scene, beam_at, model_of, own_frequency, periods_of, require_drive_below
+from studies.shell.scene import Scene, beam_at, model_of, own_frequency, require_drive_below
 from studies.shell.study import Run, study
 
 ORBIT_PERIODS = 2
@@ -47,6 +49,13 @@ APERIODIC = 8
 
 TOLD = ("first_touch", "approach", "restitution", "delay", "kick", "impacts", "contact_time", "ringing")
 """Columns of a collision that are shown to a person."""
+
+COLLISIONS = (
+    'Collisions in the stretch that is shown; "-" or empty: the number does not exist. There is no approach '
+    "where mode 1 alone would not reach the gap: ringing made the touch. There is no restitution or delay "
+    "where mode 1 does not come back to the gap. A delay is negative where the motion of mode 1 after the "
+    "collision, continued back in time, leaves the plate before the incoming one reaches it."
+)
 
 
 def conditions(scene: Scene, options: Mapping[str, Any]) -> tuple[list[float], float]:
@@ -86,9 +95,9 @@ def time_trace(
     peaks = peaks_of(lines_hz, amplitude, model.frequencies_hz, drive_hz)
     unit = "rad" if scene.readout.quantity == "rotation" else "m"
     run.arrays("time_trace", time_s=trace.time, tip_m=trace.tip, **{f"readout_{unit}": trace.readout})
-    run.table("collisions", trace.collisions, "Collisions in the stretch that is shown.", show=TOLD)
+    run.table("collisions", trace.collisions, COLLISIONS, of=Collision, show=TOLD)
     run.arrays("spectrum", frequency_hz=lines_hz, **{f"amplitude_{unit}": amplitude})
-    run.table("peaks", peaks, f"Peaks of the read-out [{unit}], with the mode they belong to.", show=())
+    run.table("peaks", peaks, f"Peaks of the read-out [{unit}] and their modes.", of=Peak, show=())
     from studies.experiment.time_trace.figure import draw_spectrum, draw_trace  # matplotlib is slow to import
 
     name = word(settled.period)
@@ -104,17 +113,21 @@ def time_trace(
         draw_spectrum(lines_hz, amplitude, model.frequencies_hz, drive_hz, unit),
         "Amplitudes of the read-out over one period of the orbit; dotted: the modes, dashed: the drive.",
     )
-    run.say(f"{drive_hz:g} Hz, excess {excess:g}: {name}")
+    amplitude_m = oscillator.driven.amplitude
+    size_g = amplitude_m * oscillator.driven.angular_frequency**2 / g
+    run.say(f"{drive_hz:g} Hz, excess {excess:g}, base {1e3 * amplitude_m:.4g} mm, {size_g:.3g} g: {name}")
     filmed = dict[str, object]()
     if film:
         words = f"{name}, {drive_hz:g} Hz, excess {excess:g}"
         filmed["film"] = filming.film(scene, run, oscillator, settled, trace, words, frames=frames)
-    seen = periods_of(scene).get(drive_hz) if excess == letter.TIME_TRACE_EXCESS else None
+    seen = letter.PERIODS.get(drive_hz) if run.letters and excess == letter.TIME_TRACE_EXCESS else None
     if seen == letter.PERIODS[letter.TIME_TRACE_HZ]:
         judge(run, name, seen, trace.collisions, peaks)
     return {
         "frequency_hz": drive_hz,
         "excess": excess,
+        "drive_amplitude_m": amplitude_m,
+        "drive_acceleration_g": size_g,
         "period": settled.period,
         "letter": seen,
         "impacts": round(trace.impact_times.size / share),
@@ -132,8 +145,8 @@ def judge(run: Run, period: str, seen: int, found: Sequence[Collision], peaks: S
     run.verdict("time_trace", "agrees" if period == f"p{seen}" else "differs", found=period)
     higher = sorted({peak.mode for peak in peaks if peak.mode is not None and peak.mode > 1})
     verdict: Verdict = "agrees" if len(higher) > 2 else "in part" if higher else "differs"
-    told = f"modes {', '.join(map(str, higher)) or 'none'} have a peak in the spectrum"
-    run.verdict("many_modes", verdict, found=told)
+    told = f"modes {', '.join(map(str, higher))} have" if higher else "no mode above the first has"
+    run.verdict("many_modes", verdict, found=f"{told} a peak in the spectrum")
     if found and math.isfinite(found[0].restitution):
         near = abs(found[0].restitution - letter.RESTITUTION) <= 0.5 * letter.RESTITUTION
         note = f"delay {1e3 * found[0].delay:.3f} ms, kick {found[0].kick:.3f}"

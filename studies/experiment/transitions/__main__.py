@@ -94,12 +94,10 @@ def transitions(
     rows = [row for at in found for row in at.rows]
     parameters = [at.extracted for at in found if at.extracted is not None]
     run.json("rows", rows)
-    run.table("transitions", rows, "Born periods, and how their orbits end.", show=())
+    run.table("transitions", rows, "Born periods, and how their orbits end.", of=Transition, show=())
     lines = [line_of(at.rows) for at in found]
-    run.table("periods", lines, "Born period, and excess F/F_g - 1 at which its orbit ends.")
-    run.table(
-        "two_parameters", parameters, "Restitution and delay on the settled orbits, and what they give."
-    )
+    run.table("periods", lines, "Born period, and excess F/F_g - 1 at which its orbit ends.", of=Line)
+    run.table("two_parameters", parameters, "Restitution and delay on the settled orbits.", of=Extracted)
     each = partial(scans, scene, model, full)
     diagrams = run.map(each, [at.rows for at in found], "orbit diagrams")
     store(run, found, diagrams)
@@ -160,8 +158,9 @@ def compare(run: Run, rows: Sequence[Transition], parameters: Sequence[Extracted
     text = (
         "Eq. (1) with the restitution and delay of the beam's collisions has the beam's period at "
         f"{len(same)} of {len(found)} frequencies, and the map with that restitution at {of_map}. Its orbits "
-        f"end where the beam's do, to a factor of {NEARLY:g}, at {close}. Elsewhere higher modes still ring "
-        "when the tip comes back, which no restitution and no delay of a first collision contain."
+        f"end where the beam's do, to a factor of {NEARLY:g}, at {close}."
+        + " Elsewhere higher modes still ring when the tip comes back, which no restitution and no delay of "
+        "a first collision contain." * (close < len(found))
     )
     run.answer("two_parameters", text)
     verdict: Verdict = "agrees" if close == len(found) else "in part" if same else "differs"

@@ -21,7 +21,7 @@ from studies.physics.descriptions import (
     up_and_down,
 )
 from studies.physics.two_parameters import Extracted, extracted
-from studies.shell.scene import Scene, beam_at, single_mode_at
+from studies.shell.scene import Scene, beam_at, of_the_letter, single_mode_at
 
 OTHER_EXCESSES = (2.5e-4, 1e-2)
 """Where the born period is given as well: the letter's amplitude stability, and well above grazing."""
@@ -90,11 +90,12 @@ def rows_at(scene: Scene, frequency: float, model: ModalModel) -> AtFrequency:
     single, cycles = single_mode_at(scene, frequency).grazing_amplitude(), max(scene.scan.settle_cycles, 1)
     grazing = dict.fromkeys(TITLES, single) | {"beam": beam_at(scene, frequency, model).grazing_amplitude()}
     found, failures, parameters = list[Transition](), list[tuple[str, str]](), None
+    own = of_the_letter(scene)
     for name in TITLES:
         row = Transition(
             frequency_hz=frequency,
             description=name,
-            letter=letter.PERIODS.get(frequency),
+            letter=letter.PERIODS.get(frequency) if own else None,
             grazing_amplitude=grazing[name],
             born={},
         )

@@ -48,13 +48,14 @@ from contact import ImpactOscillator
 from studies.measurement.identify import coverage as covering
 from studies.measurement.identify import figure
 from studies.measurement.identify.displacement import SENSOR
-from studies.measurement.identify.estimates import SHOWN, estimates_of, quality_of, traded
+from studies.measurement.identify.estimates import SHOWN, Estimate, Quality, estimates_of, quality_of, traded
 from studies.measurement.identify.fit import Fit
 from studies.measurement.identify.fit import fit as fitted
 from studies.measurement.identify.next_measurement import (
     EXCESSES,
     FREQUENCIES_HZ,
     THIN,
+    LetterOrbits,
     Measurement,
     Plan,
     answer,
@@ -62,6 +63,7 @@ from studies.measurement.identify.next_measurement import (
     letter_rows,
     measurements_at,
 )
+from studies.measurement.identify.profiles import Profile
 from studies.measurement.identify.records import Kind, Record, read_record, synthetic
 from studies.physics.parameters import Description, described, fitted_scene, parameters_of, require_names
 from studies.shell.options import POSITIONAL
@@ -84,6 +86,7 @@ EXAMPLES: Mapping[Kind, Description] = {
     "transitions": "one_mode",
 }
 FREQUENCY_HZ, SEED = 22.20, 1996  # of the example: the letter's p5
+BEST = ("frequency_hz", "excess", "period", "together")
 
 
 def frequency_of(record: Record, scene: Scene) -> float:
@@ -208,7 +211,7 @@ def truth(scene: Scene, run: Run, records: int) -> dict[str, object]:
     """The share of intervals that hold the true value."""
     beam = run.choose_modes(scene, {"fold": 0.05})
     rows = covering.coverage(scene, beam, run, records=records, beam_records=records // 4)
-    run.table("coverage", rows, covering.COVERED)
+    run.table("coverage", rows, covering.COVERED, of=covering.Coverage)
     return {"coverage": rows}
 
 
@@ -216,16 +219,16 @@ def report(run: Run, found: Mapping[str, Fit]) -> dict[str, Any]:
     """Tables and figure of the fits."""
     profiles = {name: traded(one, run.quick) for name, one in found.items()}
     estimates = [row for name, one in found.items() for row in estimates_of(name, one, profiles[name])]
-    run.table("parameters", estimates, "Estimates with standard errors and 90 % intervals.", show=SHOWN)
+    run.table("parameters", estimates, "Standard errors and 90 % intervals.", of=Estimate, show=SHOWN)
     quality = [quality_of(name, one) for name, one in found.items()]
-    run.table("quality", quality, "The residuals of the fits.")
+    run.table("quality", quality, "The residuals of the fits.", of=Quality)
     for row in (row for row in quality if row.too_small):
         run.say(
             f"{row.record}: residuals are no noise (p {row.chance:.0e}), errors mean little: the model "
             "is too small, or the start was too far off"
         )
     points = [row for rows in profiles.values() for row in rows]
-    run.table("profile", points, "Likelihood along one of two parameters that trade off.", show=())
+    run.table("profile", points, "Likelihood where two parameters trade off.", of=Profile, show=())
     run.arrays("residuals", **{f"residuals_{name}": one.residuals for name, one in found.items()})
     run.figure("identify", figure.draw(found, profiles), figure.CAPTION)
     return {"rows": estimates, "quality": quality}
@@ -255,13 +258,14 @@ def where_to_measure(
     columns = run.map(partial(measurements_at, of, plan, EXCESSES[::thin]), frequencies, "orbits")
     found = [one for column in columns for one in column]
     chosen = best(found)
-    run.table("measurements", found, f"Standard errors of {', '.join(wanted)} by one orbit.", show=())
-    run.table("next", chosen, "The five best.", show=("frequency_hz", "excess", "period", "together"))
+    caption = f"Standard errors of {', '.join(wanted)} by one orbit."
+    run.table("measurements", found, caption, of=Measurement, show=())
+    run.table("next", chosen, "The five best.", of=Measurement, show=BEST)
     if found:
         run.figure("next", figure.draw_plane(found, plan), figure.PLANE)
-    if corresponding(scene, FREQUENCY_HZ) == FREQUENCY_HZ:
+    if run.letters:
         letters = letter_rows(of, plan)
-        run.table("letter_orbits", letters, "The same by the letter's orbits at an excess of 1e-3.")
+        run.table("letter_orbits", letters, "The same by the letter's orbits.", of=LetterOrbits)
         if plan.names == Plan().names:
             run.answer("period", answer(found, letters, plan))
     return chosen

@@ -198,8 +198,10 @@ def _judged(problem: Problem, found: Any, oscillator: ImpactOscillator, known: b
         unknowns=found.x,
     )
     most = np.where(problem.log, LOST, np.maximum(np.abs(found.x), 1.0))[own]
-    if not result.too_small and np.any(lost := np.sqrt(np.diag(covariance)) > most):  # else `report` says so
-        worst, blind = names[int(np.argmax(lost))], _blind(axes[:, own], names)
+    share = np.sqrt(np.diag(covariance)) / most
+    if not result.too_small and np.any(share > 1.0):  # else `report` says so
+        worst, blind = names[int(np.argmax(share))], _blind(axes[:, own], names)
+        blind = blind if worst in blind.split() else f"determine {worst}"
         raise InvalidValue(f"the record cannot {blind}: the standard error of {worst} is above its value")
     return result
 

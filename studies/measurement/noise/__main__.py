@@ -30,7 +30,7 @@ from beam import InvalidValue
 from contact import StroboscopicMap
 from contact.orbits import born
 from studies.letter import AMPLITUDE_STABILITY, SETTLE_CYCLES
-from studies.measurement.noise.model import Observed, ends_of, observed_of
+from studies.measurement.noise.model import End, Observed, ends_of, observed_of
 from studies.measurement.noise.places import Place
 from studies.measurement.noise.scans import Protocol, cell
 from studies.shell.files import fingerprint
@@ -87,10 +87,10 @@ def noise(
     )
     at_letter = [row for row in ends if (row.frequency_hz, row.m) in letters]
     shown = [row for row in observed if (row.frequency_hz, row.m) in letters]
-    run.table("escape", ends, "Excess at which p_m and p_1 end, simulated and by formula.", show=())
-    run.table("escape_at_letter", at_letter, f"The same at the letter's frequencies; along Fig. 3 {rms}.")
-    run.table("observed", observed, "Hysteresis along Fig. 3 as an observer would measure it.", show=())
-    run.table("observed_at_letter", shown, "The same at the letter's frequencies.")
+    run.table("escape", ends, "Excess at which p_m and p_1 end, simulated and by formula.", of=End, show=())
+    run.table("escape_at_letter", at_letter, f"The same at the frequencies of the scene; {rms}.", of=End)
+    run.table("observed", observed, "Hysteresis as an observer would measure it.", of=Observed, show=())
+    run.table("observed_at_letter", shown, "The same at the frequencies of the scene.", of=Observed)
 
     from studies.measurement.noise import figure  # matplotlib is slow to import
 

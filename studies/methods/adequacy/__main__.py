@@ -42,7 +42,7 @@ def adequacy(scene: Scene, run: Run) -> Mapping[str, object]:
                 f"no model gives {quantity} at {frequency:g} Hz to {row.tolerance:g}: {row.error:.1e} is left"
             )
     shown = ("quantity", "frequency_hz", "tolerance", "error", "error_one_less", "least")
-    run.table("least", rows, "The least model for each question.", show=shown)
+    run.table("least", rows, "The least model for each question.", of=Row, show=shown)
     run.figure(
         "least",
         draw(rows),

@@ -53,5 +53,5 @@ def stability(
         if arrays:
             run.arrays(name, **arrays)
             run.figure(name, *family(name).draw(arrays))
-    run.table("limits", rows, "Where methods fail: theory and measurement.")
+    run.table("limits", rows, "Where methods fail: theory and measurement.", of=Limit)
     return {"rows": rows}

@@ -66,8 +66,8 @@ def validation(scene: Scene, run: Run) -> Mapping[str, object]:
         agrees = sum(row.verdict == "agrees" for row in found)
         sources.append(Tally(source=name, agrees=agrees, differs=len(found) - agrees))
         rows += found
-    run.table("sources", sources, "Numbers of each source that agree and differ.")
-    run.table("rows", rows, "Published numbers and ours.")
+    run.table("sources", sources, "Numbers of each source that agree and differ.", of=Tally)
+    run.table("rows", rows, "Published numbers and ours.", of=Printed)
     if rows:
         run.figure("rows", draw(rows), "Differences from published numbers over the error of their source.")
     return {"sources": sources, "rows": rows}

@@ -80,20 +80,19 @@ def work_precision(scene: Scene, run: Run) -> Mapping[str, object]:
         rows += rows_of(reference, sweep, slowest=slowest, repeats=repeats)
     reference, periodic = orbit_rows(quick=run.quick, repeats=repeats)
     references, rows = [*references, reference], [*rows, *periodic]
-    run.table("rows", rows, "Every method at every setting.", show=())
-    run.table(
-        "cheapest", cheapest_of(rows), "Time per drive period [us] for an error of mode 1, crossings missed."
-    )
+    run.table("rows", rows, "Every method at every setting.", of=Row, show=())
+    best = cheapest_of(rows)
+    run.table("cheapest", best, "Time per drive period [µs], crossings missed, by error.", of=Cheapest)
     spent = costs.costs(scene.replace({"contact.law": "hertz"}), run)
     ratios = costs.ratios_of(spent)
-    run.table("costs", spent, "Time per drive period and per collision.")
+    run.table("costs", spent, "Time per drive period and per collision.", of=costs.Cost)
     run.say(", ".join(f"{name} {ratio:.3g}" for name, ratio in ratios.items()))
     run.figure(
         "costs", costs.draw_costs(spent), "Time per drive period of the beam against the number of modes."
     )
     paths = [] if run.quick else gradients.gradients(single_mode_at(scene, GRADIENT_HZ).with_excess(1e-3))
     if paths:
-        run.table("gradients", paths, gradients.CHART, show=())
+        run.table("gradients", paths, gradients.CHART, of=gradients.Gradient, show=())
         run.figure("gradients", gradients.draw_gradients(paths), gradients.CHART)
     for row in rows:
         if row.family == EXACT and row.failed:

@@ -60,8 +60,9 @@ SCENES = ROOT / "studies" / "scenes"
 LARGEST_BANDS = range(3, 13)
 """Periods whose bands are looked at: edges lie closer and closer beyond."""
 
-SAME_PERIOD = 1e-3
-"""Relative change of T within which a spring counts as the letter's: twice the error of its 40.80 ms."""
+SAME_PERIOD, SAME_SPRING, TYPICAL = 1e-3, 0.005, 3.0
+"""Relative change of T within which a spring counts as the letter's: twice the error of its 40.80 ms; that of
+the first mode beyond which the born period changes next to a band edge; factor on the letter's amplitude."""
 
 SAME_DRIVE = 3e-3
 """Relative difference of two f T that are taken for one: a fifth of the narrowest distance in Fig. 2."""
@@ -279,6 +280,16 @@ def own_frequency(scene: Scene, letter_hz: float) -> float:
     there, drives = corresponding(scene, letter_hz), sorted(harmonic(scene).drive.frequencies_hz)
     near = min(drives, key=lambda frequency: abs(frequency - there))
     return near if abs(near / there - 1.0) <= SAME_DRIVE else drives[(len(drives) - 1) // 2]
+
+
+def of_the_letter(scene: Scene) -> bool:
+    """Whether T and mu, T of the spring's first mode, and roughly the drive amplitude are the letter's."""
+    printed, first = letter.BREAKDOWN, free_period(scene)
+    rate = scene.single_mode.decay_rate_per_s - printed["decay_rate_per_s"]
+    driven = _on_stop(scene, single_mode_of(scene), contact_law_of(scene), letter.TIME_TRACE_HZ)
+    size = driven.grazing_amplitude() / letter.DRIVE_AMPLITUDE_M
+    same = corresponding(scene, 1.0) == 1.0 and abs(first / letter.FREE_PERIOD_S - 1.0) <= SAME_SPRING
+    return same and abs(rate) <= printed["decay_rate_error_per_s"] and 1.0 / TYPICAL <= size <= TYPICAL
 
 
 def periods_of(scene: Scene) -> Mapping[float, int]:

@@ -51,7 +51,7 @@ from studies.spring.shape.shapes import TITLES, Reading, ReadingRow, reading_row
 def shape(scene: Scene, run: Run) -> Mapping[str, object]:
     """Compute, store and draw."""
     readings = {name: reading_row(one) for name, one in shapes_of(scene).items()}
-    run.table("readings", list(readings.values()), "Four springs of one free period.")
+    run.table("readings", list(readings.values()), "Four springs of one free period.", of=ReadingRow)
     judge(run, readings)
     return {
         "rows": list(readings.values()),
@@ -88,7 +88,7 @@ def compare_plate(scene: Scene, run: Run) -> list[OrbitEnds]:
         f"Ends of the orbits on the way down, by plates of {MODES} modes and the beam with {beam.n_modes}. "
         "The main job keeps as few modes as its accuracy of 7 % allows."
     )
-    run.table("plate_ends", orbits, kept)
+    run.table("plate_ends", orbits, kept, of=OrbitEnds)
     same = all(row.same_period for row in orbits)
     words = [f"As a plate the spring {'keeps every' if same else 'changes a'} period that is born."]
     known = [row for row in orbits if row.factors]
@@ -108,6 +108,6 @@ def finite_amplitude(scene: Scene, run: Run) -> list[Survival]:
     springs, gaps = springs_of(scene, run.quick)
     found = run.map(partial(survivals, scene, gaps), springs, "springs")
     rows = [row for part in found for row in part]
-    run.table("springs", rows, "Springs by reading, radius, gap and ball; born period at 1e-3.")
+    run.table("springs", rows, "Springs by reading, radius, gap and ball; born period at 1e-3.", of=Survival)
     run.figure("finite_amplitude", figure.draw_survival(scene, rows), figure.SURVIVAL)
     return rows
