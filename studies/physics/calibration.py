@@ -37,6 +37,7 @@ from scipy.optimize import brentq
 from beam import SuspiciousValue
 from contact import Collision, first_collision
 from studies import letter
+from studies.physics.least_model import middle_of
 from studies.shell.scene import Scene, SceneError, beam_at, damping_of, free_period, modes_of, spring_of
 from studies.shell.scene.key import CALIBRATED
 from studies.shell.scene.spring import DAMPING
@@ -53,7 +54,7 @@ BEYOND = 1e9
 
 THINNEST, LOSS_FACTORS, MASSES = 0.02, (1e-9, 5.0), (0.3, 3.0)
 """Where is looked: thickness of the sheet over the present one, from; loss factor of the tape; mass of the
-ball over the present one."""
+ball over the present one, or over that of the leaf if there is no ball yet."""
 
 MOST_STEPS, MOST_ROUNDS = 200, 40
 """Of Brent's method, four times the bisections that pin down a double; of fitting period and damping in
@@ -202,12 +203,13 @@ class Targets:
 
     @classmethod
     def of(cls, scene: Scene) -> Targets:
-        """The measured period and decay of a scene, and the rest as the letter prints it."""
+        """The measured period and decay of a scene, its middle drive frequency, the rest as in the letter."""
         keys = scene.single_mode
         return cls(
             free_period_s=keys.free_period_s,
             decay_rate_per_s=keys.decay_rate_per_s,
             grazing_amplitude_m=letter.DRIVE_AMPLITUDE_M,
+            frequency_hz=middle_of(scene),
         )
 
 
@@ -234,15 +236,15 @@ def calibrate_all(scene: Scene, targets: Targets) -> Scene:
     def kick(trial: Scene) -> float:
         return collision_at(others(trial), targets.frequency_hz, targets.excess).kick
 
-    between = (MASSES[0] * scene.tip.mass_kg, MASSES[1] * scene.tip.mass_kg)
+    mass = scene.tip.mass_kg or leaf_mass(scene)
     fitted = solve_for(
         "tip.mass_kg",
         scene,
         kick,
         targets.kick,
         name=f"kick at excess {targets.excess:g}",
-        unit="1",
-        between=between,
+        unit="[1]",
+        between=(MASSES[0] * mass, MASSES[1] * mass),
         accuracy=KICK_ACCURACY,
     )
     return others(fitted)

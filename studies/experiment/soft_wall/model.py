@@ -18,6 +18,10 @@ from studies.shell.scene import Scene, approach_speed, beam_at
 SPAN = 3.0
 """The doubling is looked for between a third and three times the approach velocity that the formula gives."""
 
+BESIDE = 1.01
+"""Ratio of approach velocities from an undecided doubling to the ends of its bracket: rounding of the
+multipliers, up to 1e-4, cannot change the stability there."""
+
 RATIO = 1.05
 """Ratio of two excesses between which a local power is taken."""
 
@@ -40,11 +44,18 @@ class Kick:
 
 @dataclass(frozen=True, kw_only=True)
 class Doubling:
-    """Excess of the period doubling of p1: by shooting and in closed form."""
+    """Excess of the period doubling of p1: by shooting and in closed form.
+
+    The `event` of the branch is "period doubling", "undecided" or "none".  Where rounding of the multipliers
+    leaves it undecided, p1 is stable at `stable_at` and unstable at `unstable_at`.
+    """
 
     frequency_hz: float
     hardness: float
+    event: str
     excess: float | None
+    stable_at: float | None
+    unstable_at: float | None
     closed_form: float | None
 
 
@@ -83,13 +94,15 @@ def kicks_of(wall: SoftWall, excesses: np.ndarray) -> list[Kick]:
     ]
 
 
-def doubling_near(oscillator: ImpactOscillator, peak: float) -> PeriodicOrbit | None:
-    """The period doubling of p1 by shooting, next to where its peak is `peak` gaps over the wall."""
+def doubling_near(
+    oscillator: ImpactOscillator, peak: float, kind: str = "period doubling"
+) -> PeriodicOrbit | None:
+    """The event of p1 of this kind by shooting, next to where its peak is `peak` gaps over the wall."""
     family = Shooting(oscillator=oscillator, period=1)
     speed = oscillator.unit_speed * math.sqrt(2.0 * peak)
     low, high = speed / SPAN, SPAN * speed
     branch = follow(family, family.at_speed(speed), low=low, high=high, step=math.log(SPAN))
-    return next(iter(branch.of_kind("period doubling")), None)
+    return next(iter(branch.of_kind(kind)), None)
 
 
 FAINTEST = 1e-6
@@ -126,11 +139,21 @@ def loss_of_stability(oscillator: ImpactOscillator, doubling: PeriodicOrbit) -> 
 def doubling_of(wall: SoftWall) -> Doubling:
     """Period doubling of p1 beside the formula; where that has none it is looked for at z = 1, its last."""
     closed = wall.doubling()
-    orbit = doubling_near(wall.struck, wall.peak_of(1.0) if closed is None else closed[0])
+    peak = wall.peak_of(1.0) if closed is None else closed[0]
+    orbit = doubling_near(wall.struck, peak)
+    unsure = None if orbit else doubling_near(wall.struck, peak, "undecided")
+    beside = {}
+    if unsure:
+        family = Shooting(oscillator=wall.struck, period=1)
+        found = [family.at_speed(unsure.speed * ratio, unsure) for ratio in (1.0 / BESIDE, BESIDE)]
+        beside = {one.stable: one.excess for one in found}
     return Doubling(
         frequency_hz=wall.frequency,
         hardness=wall.hardness,
-        excess=None if orbit is None else orbit.excess,
+        event="period doubling" if orbit else "undecided" if unsure else "none",
+        excess=orbit.excess if orbit else None,
+        stable_at=beside.get(True),
+        unstable_at=beside.get(False),
         closed_form=None if closed is None else closed[1],
     )
 
