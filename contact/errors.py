@@ -77,8 +77,8 @@ class NotPeriodic(ContactError):
 class BranchEnded(ContactError):
     """A branch of periodic orbits ends before the event that is looked for.
 
-    `orbit` is the last orbit of the branch.  It is None if there is no orbit to start from, or if the error
-    comes from another process and the law of the orbit has functions.
+    `orbit` is the last orbit of the branch.  It is None if there is no orbit to start from, or if its law has
+    functions and the error comes from another process.
     """
 
     reason = "the branch of periodic orbits ends"

@@ -14,7 +14,6 @@ w), so that the tip just touches the stop at the grazing amplitude Z_g = gap / |
 from __future__ import annotations
 
 import copy
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -166,16 +165,11 @@ class ImpactOscillator:
     def tip(self, values: np.ndarray) -> np.ndarray:
         """Tip displacement relative to the base [m], or tip velocity [m/s], shape (...), of modal
         displacements or velocities `values`, shape (..., n_modes); NaN gives NaN."""
-        return self._modal("values", values) @ self.model.phi
-
-    def _modal(self, name: str, values: object) -> np.ndarray:
-        """The values as an array, refused unless its last axis has a number for each mode."""
-        with suppress(ValueError):  # rows of several lengths
-            array = np.asarray(values)
-            if array.dtype.kind in "iufc" and array.shape[-1:] == (self.n_modes,):
-                return array
-        valid = f"an array of shape (..., {self.n_modes}), a number for each mode"
-        raise InvalidValue(f"{name} is {shown(values)}; it must be {valid}")
+        try:
+            return np.asarray(values) @ self.model.phi
+        except (TypeError, ValueError):
+            valid = f"an array of shape (..., {self.n_modes}), a number for each mode"
+            raise InvalidValue(f"values is {shown(values)}; it must be {valid}") from None
 
     def steady_response(self) -> np.ndarray:
         """H_k, complex, shape (n_modes,) [kg^0.5]: without contact q_k(t) = Z Im(H_k exp(i 2 pi f t))."""
@@ -218,7 +212,7 @@ class ImpactOscillator:
     def energy(self, displacement: np.ndarray, velocity: np.ndarray) -> np.ndarray:
         """Kinetic and elastic energy of modal states, arrays (..., n_modes) -> (...) [J]; contact
         excluded."""
-        q, v = self._modal("displacement", displacement), self._modal("velocity", velocity)
+        q, v = np.asarray(displacement), np.asarray(velocity)
         return 0.5 * np.sum(v**2 + (self.model.omega * q) ** 2, axis=-1)
 
     def motion(self) -> Motion:

@@ -173,8 +173,7 @@ class Impacts:
         `times` [s] has the shape (2, n_impacts), and the modal states (q, q') have (2, n_impacts, 2,
         n_modes): first the touches, then the releases.
         """
-        given = ", ".join(sorted(numbers))
-        valid = "approach, kind, loss, rebound"
+        given, valid = ", ".join(sorted(numbers)), "approach, kind, loss, rebound"
         require(given == valid, f"numbers has {given or 'no entries'}; it must have {valid}")
         period, clock = split_time(times[0], oscillator.period)
         end_clock, motion = times[1] - period * oscillator.period, oscillator.motion()

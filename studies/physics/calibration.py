@@ -54,7 +54,7 @@ BEYOND = 1e9
 
 THINNEST, LOSS_FACTORS, MASSES = 0.02, (1e-9, 5.0), (0.3, 3.0)
 """Where is looked: thickness of the sheet over the present one, from; loss factor of the tape; mass of the
-ball over the present one, or over that of the leaf if there is no ball yet."""
+ball over the present one."""
 
 MOST_STEPS, MOST_ROUNDS = 200, 40
 """Of Brent's method, four times the bisections that pin down a double; of fitting period and damping in
@@ -236,7 +236,9 @@ def calibrate_all(scene: Scene, targets: Targets) -> Scene:
     def kick(trial: Scene) -> float:
         return collision_at(others(trial), targets.frequency_hz, targets.excess).kick
 
-    mass = scene.tip.mass_kg or leaf_mass(scene)
+    if not (mass := scene.tip.mass_kg) > 0.0:
+        words = "it must be above zero, as masses from {:g} to {:g} times it are tried".format(*MASSES)
+        raise SceneError(f"tip.mass_kg is {mass} kg; {words}")
     fitted = solve_for(
         "tip.mass_kg",
         scene,

@@ -126,8 +126,6 @@ CONTACT = (
        kind=dict(amplitude=None), value=dict(amplitude=each(-1e-3, INF))),
     of(EQ_1.tip, dict(values=[[0.0], [NAN]]), name="ImpactOscillator.tip",
        value=dict(values=each("tip", contact.State.rest(1), [0.0, 1.0], 0.0, [[0.0], [0.0, 1.0]]))),
-    of(EQ_1.energy, dict(displacement=[1.0], velocity=[0.0]), name="ImpactOscillator.energy",
-       value=dict(displacement=[0.0, 1.0], velocity=each([], "fast"))),
     of(contact.State, START | dict(time=0.0, regime=0, wait=0.0, rebound=0.0),
        value=dict(displacement=each([], "rest", [NAN]),
                   velocity=each([0.0, 1.0], told([[0.0]], "velocity of the state")),

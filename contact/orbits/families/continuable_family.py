@@ -157,5 +157,5 @@ def require_orbit(family: ContinuableFamily, name: str, orbit: object, *, member
         require(found == valid, f"{name} has {found} {what}; it must have {valid}, like the family")
     numbers = zip(*(one.with_amplitude(1.0).motion() for one in pair), strict=True)
     same = all(np.shape(a) == np.shape(b) and np.allclose(a, b, 1e-9, 1e-12) for a, b in numbers)
-    words = "is not the oscillator of the family; it must be the same but for the amplitude of its drive"
+    words = "is not that of the family; it must be the same but for the amplitude of its drive"
     require(same or not member, f"oscillator of the {name} {words}")

@@ -129,9 +129,8 @@ def born(
 ) -> Settled[S]:
     """The orbit on which the motion settles when the drive is raised to `excess` [1] in one step.
 
-    The motion starts without impacts at the excess `below` [1], below zero and below `excess`.  The amplitude
-    of `strobed` itself does not matter.  `most_cycles` bounds the transient: orbits born at grazing settle
-    within some hundred periods.
+    The motion starts without impacts at `below` [1], below zero and `excess`; the amplitude of `strobed` does
+    not matter.  `most_cycles` bounds the transient: orbits born at grazing settle in some hundred periods.
     """
     require_map(strobed)
     raised = strobed.at(excess)

@@ -18,9 +18,7 @@ from studies.shell.scene import Scene, approach_speed, beam_at
 SPAN = 3.0
 """The doubling is looked for between a third and three times the approach velocity that the formula gives."""
 
-BESIDE = 1.01
-"""Ratio of approach velocities from an undecided doubling to the ends of its bracket: rounding of the
-multipliers, up to 1e-4, cannot change the stability there."""
+CERTAIN, UNDECIDED = "period doubling", "undecided"  # events of a branch
 
 RATIO = 1.05
 """Ratio of two excesses between which a local power is taken."""
@@ -46,8 +44,8 @@ class Kick:
 class Doubling:
     """Excess of the period doubling of p1: by shooting and in closed form.
 
-    The `event` of the branch is "period doubling", "undecided" or "none".  Where rounding of the multipliers
-    leaves it undecided, p1 is stable at `stable_at` and unstable at `unstable_at`.
+    Where rounding of the multipliers leaves the `event` undecided, p1 is stable at the excess `stable_at` and
+    unstable at `unstable_at`.
     """
 
     frequency_hz: float
@@ -94,10 +92,8 @@ def kicks_of(wall: SoftWall, excesses: np.ndarray) -> list[Kick]:
     ]
 
 
-def doubling_near(
-    oscillator: ImpactOscillator, peak: float, kind: str = "period doubling"
-) -> PeriodicOrbit | None:
-    """The event of p1 of this kind by shooting, next to where its peak is `peak` gaps over the wall."""
+def doubling_near(oscillator: ImpactOscillator, peak: float, kind: str = CERTAIN) -> PeriodicOrbit | None:
+    """The period doubling of p1 by shooting, next to where its peak is `peak` gaps over the wall."""
     family = Shooting(oscillator=oscillator, period=1)
     speed = oscillator.unit_speed * math.sqrt(2.0 * peak)
     low, high = speed / SPAN, SPAN * speed
@@ -141,16 +137,16 @@ def doubling_of(wall: SoftWall) -> Doubling:
     closed = wall.doubling()
     peak = wall.peak_of(1.0) if closed is None else closed[0]
     orbit = doubling_near(wall.struck, peak)
-    unsure = None if orbit else doubling_near(wall.struck, peak, "undecided")
-    beside = {}
+    unsure = None if orbit else doubling_near(wall.struck, peak, UNDECIDED)
+    beside = dict[bool, float]()
     if unsure:
-        family = Shooting(oscillator=wall.struck, period=1)
-        found = [family.at_speed(unsure.speed * ratio, unsure) for ratio in (1.0 / BESIDE, BESIDE)]
-        beside = {one.stable: one.excess for one in found}
+        for ratio in (0.99, 1.01):  # rounding of the multipliers, up to 1e-4, decides nothing there
+            one = Shooting(oscillator=wall.struck, period=1).at_speed(unsure.speed * ratio, unsure)
+            beside[one.stable] = one.excess
     return Doubling(
         frequency_hz=wall.frequency,
         hardness=wall.hardness,
-        event="period doubling" if orbit else "undecided" if unsure else "none",
+        event=CERTAIN if orbit else UNDECIDED if unsure else "none",
         excess=orbit.excess if orbit else None,
         stable_at=beside.get(True),
         unstable_at=beside.get(False),
