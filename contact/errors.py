@@ -5,6 +5,9 @@ TypeError, where the object is made.  The classes here are for valid computation
 They carry time and place of the failure, and never a number that might be taken for a result.
 """
 
+import pickle
+from contextlib import suppress
+
 
 class ContactError(RuntimeError):
     """A computation of impacts that could not be finished.
@@ -24,8 +27,15 @@ class ContactError(RuntimeError):
         super().__init__(f"{self.reason} {place}{'; ' + detail if detail else ''}")
 
     def __reduce__(self) -> tuple[object, ...]:
-        """The sentence and all attributes, so that an error leaves a process of workers as itself."""
-        return type(self).__new__, (type(self), *self.args), self.__dict__
+        """The sentence and what can be pickled, so that an error leaves a process of workers as itself."""
+        kept = dict[str, object]()
+        for name, value in self.__dict__.items():
+            with suppress(
+                pickle.PicklingError, AttributeError, TypeError
+            ):  # an orbit under a law of functions
+                pickle.dumps(value)
+                kept[name] = value
+        return type(self).__new__, (type(self), *self.args), kept
 
 
 class UnresolvedCrossing(ContactError):
@@ -67,7 +77,8 @@ class NotPeriodic(ContactError):
 class BranchEnded(ContactError):
     """A branch of periodic orbits ends before the event that is looked for.
 
-    `orbit` is the last orbit of the branch, or None if there is no orbit to start from.
+    `orbit` is the last orbit of the branch.  It is None if there is no orbit to start from, or if its law has
+    functions and the error comes from another process.
     """
 
     reason = "the branch of periodic orbits ends"

@@ -28,6 +28,7 @@ from beam.parameters import (
     require_array,
     require_kind,
     require_within,
+    shown,
     suspect,
 )
 from contact.drive import HarmonicDrive
@@ -163,8 +164,12 @@ class ImpactOscillator:
 
     def tip(self, values: np.ndarray) -> np.ndarray:
         """Tip displacement relative to the base [m], or tip velocity [m/s], shape (...), of modal
-        displacements or velocities `values`, shape (..., n_modes)."""
-        return np.asarray(values) @ self.model.phi
+        displacements or velocities `values`, shape (..., n_modes); NaN gives NaN."""
+        try:
+            return np.asarray(values) @ self.model.phi
+        except (TypeError, ValueError):
+            valid = f"an array of shape (..., {self.n_modes}), a number for each mode"
+            raise InvalidValue(f"values is {shown(values)}; it must be {valid}") from None
 
     def steady_response(self) -> np.ndarray:
         """H_k, complex, shape (n_modes,) [kg^0.5]: without contact q_k(t) = Z Im(H_k exp(i 2 pi f t))."""

@@ -14,7 +14,7 @@ from functools import cached_property
 
 import numpy as np
 
-from beam.parameters import InvalidValue, final, is_number, require_whole, require_within, shown
+from beam.parameters import InvalidValue, final, is_number, require, require_whole, require_within, shown
 from contact.drive import split_time
 from contact.flight.modal_flow import steady_motion
 from contact.flight.motion import Motion
@@ -173,6 +173,8 @@ class Impacts:
         `times` [s] has the shape (2, n_impacts), and the modal states (q, q') have (2, n_impacts, 2,
         n_modes): first the touches, then the releases.
         """
+        given, valid = ", ".join(sorted(numbers)), "approach, kind, loss, rebound"
+        require(given == valid, f"numbers has {given or 'no entries'}; it must have {valid}")
         period, clock = split_time(times[0], oscillator.period)
         end_clock, motion = times[1] - period * oscillator.period, oscillator.motion()
         before, after = states - steady_states(motion, np.array([clock, end_clock]) % motion.period)

@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from beam.parameters import require, require_array, require_kind, require_whole
+from beam.parameters import require, require_array, require_each, require_kind, require_whole
 from contact.drive import split_time
 from contact.engine.event_loop import DONE
 from contact.engine.start import failure, start_of, state_of
@@ -120,12 +120,13 @@ class StroboscopicMap:
         A strobe that falls into a contact is passed over: the next derivative then spans several periods.  If
         the last strobe does, the orbit goes on to the next one off the wall, or ends before it.
 
-        Raises ValueError for a state in contact, and UnresolvedCrossing if the motion ends at rest on the
-        stop or is in contact at every strobe.
+        Raises ValueError for a state in contact or not at a strobe, and UnresolvedCrossing if the motion ends
+        at rest on the stop or is in contact at every strobe.
         """
         count = require_whole("count", count, "drive periods")
         free = require_state(self.oscillator, state).regime == Regime.OUTSIDE
         require(free, "state is in contact; start from a strobe at which the tip is off the wall")
+        self.orbit(state, 0)  # which refuses a state that is not at a strobe
         period, n, weight = self._system.motion.period, self.oscillator.n_modes, self._system.weight
         for more in LONGER:
             run = simulate(self.oscillator, replace(state, time=0.0), periods=count + more)
@@ -157,6 +158,8 @@ def strobed_orbits(
     """
     if workers is not None:
         require_whole("workers", workers, "threads")
+    maps = require_each("maps", maps, StroboscopicMap, "one StroboscopicMap for each state")
+    states = require_each("states", states, State, "one State for each map")
     words = f"states has {len(states)} entries; it must have one for each of {len(maps)} maps"
     require(len(maps) == len(states), words)
     with ThreadPoolExecutor(max_workers=workers or os.cpu_count() or 1) as pool:

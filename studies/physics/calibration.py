@@ -37,6 +37,7 @@ from scipy.optimize import brentq
 from beam import SuspiciousValue
 from contact import Collision, first_collision
 from studies import letter
+from studies.physics.least_model import middle_of
 from studies.shell.scene import Scene, SceneError, beam_at, damping_of, free_period, modes_of, spring_of
 from studies.shell.scene.key import CALIBRATED
 from studies.shell.scene.spring import DAMPING
@@ -202,12 +203,13 @@ class Targets:
 
     @classmethod
     def of(cls, scene: Scene) -> Targets:
-        """The measured period and decay of a scene, and the rest as the letter prints it."""
+        """The measured period and decay of a scene, its middle drive frequency, the rest as in the letter."""
         keys = scene.single_mode
         return cls(
             free_period_s=keys.free_period_s,
             decay_rate_per_s=keys.decay_rate_per_s,
             grazing_amplitude_m=letter.DRIVE_AMPLITUDE_M,
+            frequency_hz=middle_of(scene),
         )
 
 
@@ -234,15 +236,17 @@ def calibrate_all(scene: Scene, targets: Targets) -> Scene:
     def kick(trial: Scene) -> float:
         return collision_at(others(trial), targets.frequency_hz, targets.excess).kick
 
-    between = (MASSES[0] * scene.tip.mass_kg, MASSES[1] * scene.tip.mass_kg)
+    if not (mass := scene.tip.mass_kg) > 0.0:
+        words = "it must be above zero, as masses from {:g} to {:g} times it are tried".format(*MASSES)
+        raise SceneError(f"tip.mass_kg is {mass} kg; {words}")
     fitted = solve_for(
         "tip.mass_kg",
         scene,
         kick,
         targets.kick,
         name=f"kick at excess {targets.excess:g}",
-        unit="1",
-        between=between,
+        unit="[1]",
+        between=(MASSES[0] * mass, MASSES[1] * mass),
         accuracy=KICK_ACCURACY,
     )
     return others(fitted)

@@ -1,9 +1,9 @@
 """Calibration: four keys of the scene fitted to the four numbers that the letter prints about its spring.
 
 Thickness from the free period (40.80 ms), tape from the decay rate of mode 1 (3.56 1/s), gap from the base
-amplitude at grazing (2 mm at 22.2 Hz), and the mass of ball and mount from a collision that stops mode 1
-(kick 1 at excess 0.013), where the restitution is smallest (``studies.physics.calibration`` has the
-equations).
+amplitude at grazing (2 mm at the scene's middle drive frequency, for the letter 22.2 Hz), and the mass of
+ball and mount from a collision that stops mode 1 (kick 1 at excess 0.013), where the restitution is smallest
+(``studies.physics.calibration`` has the equations).
 
 Run:     python -m studies calibrate
 Writes:  keys.csv (before and after), calibrated.toml, a scene that every study takes with --scene
@@ -40,7 +40,9 @@ def calibrate(scene: Scene, run: Run) -> Mapping[str, object]:
     run.text("calibrated.toml", fitted.dump())
     collision = collision_at(fitted, targets.frequency_hz, targets.excess)
     amplitude = beam_at(fitted, targets.frequency_hz).grazing_amplitude()
-    run.verdict("drive_amplitude", "fitted", found=f"{1e3 * amplitude:.3f} mm at grazing, 22.2 Hz")
+    run.verdict(
+        "drive_amplitude", "fitted", found=f"{1e3 * amplitude:.3f} mm at grazing, {targets.frequency_hz:g} Hz"
+    )
     return {
         "keys": {row.key: row.after for row in rows},
         "kick": collision.kick,

@@ -47,6 +47,7 @@ def at(displacement: float, regime: Regime = Regime.OUTSIDE, time: float = 0.0) 
     return contact.State(displacement=[q], velocity=[0.0], regime=regime, time=time)
 
 
+OFF_STROBE = told(at(0.0, time=1e-3), "time of the state is 0.001 s")
 THREE_MODES = told(contact.State.rest(3), "displacement of the state has 3 modes")
 LOADED = told(dataclasses.replace(EQ_1, load=np.array([1.0])), "load is given")
 UNDRIVEN = told(dataclasses.replace(EQ_1, drive=None), "drive is None")
@@ -123,6 +124,8 @@ CONTACT = (
     of(lambda amplitude: EQ_1.with_amplitude(amplitude), dict(amplitude=1e-3),
        name="ImpactOscillator.with_amplitude",
        kind=dict(amplitude=None), value=dict(amplitude=each(-1e-3, INF))),
+    of(EQ_1.tip, dict(values=[[0.0], [NAN]]), name="ImpactOscillator.tip",
+       value=dict(values=each("tip", contact.State.rest(1), [0.0, 1.0], 0.0, [[0.0], [0.0, 1.0]]))),
     of(contact.State, START | dict(time=0.0, regime=0, wait=0.0, rebound=0.0),
        value=dict(displacement=each([], "rest", [NAN]),
                   velocity=each([0.0, 1.0], told([[0.0]], "velocity of the state")),
@@ -149,7 +152,7 @@ CONTACT = (
     of(MAP.at, lambda c: dict(self=c.strobed, excess=0.1), over="motion", value=dict(excess=-2.0)),
     of(MAP.steady, lambda c: dict(self=c.strobed), over="motion"),
     of(MAP.orbit, lambda c: dict(self=c.strobed, state=c.state, count=20), over="starts",
-       value=dict(count=each(-5, 2.5), state=told(at(0.0, time=1e-3), "time of the state is 0.001 s"))),
+       value=dict(count=each(-5, 2.5), state=OFF_STROBE)),
     of(MAP.orbit, lambda c: dict(self=c.strobed, state=c.fast, count=20, factors=1 + 0.2 * np.sin(TWENTY)),
        name="StroboscopicMap.orbit, factors", over="motion", kind=dict(factors=each("1", ["a", "b"])),
        value=dict(factors=each([1.0], [1.0] * 19 + [0.0], [NAN] * 20, 1.0))),
@@ -160,9 +163,10 @@ CONTACT = (
     of(MAP.coordinates, lambda c: dict(self=c.strobed, state=c.state), over="starts",
        kind=dict(state=[0.0, 0.0]), value=dict(state=THREE_MODES)),
     of(MAP.jacobians, lambda c: dict(self=c.strobed, state=c.state, count=5), over="starts",
-       kind=dict(state=[0.0, 0.0]), value=dict(state=THREE_MODES)),
+       kind=dict(state=[0.0, 0.0]), value=dict(state=each(THREE_MODES, OFF_STROBE))),
     of(contact.strobed_orbits, lambda c: dict(
            maps=[c.strobed] * 2, states=[c.state] * 2, count=20, workers=2), over="starts",
+       kind=dict(maps=[NEWTON.oscillator] * 2, states=each(3, [[0.0, 0.0]] * 2)),
        value=dict(workers=0, maps=told([NEWTON.strobed], "states has 2 entries"),
                   states=each(*(told([at(0.0)] * n, f"states has {n} entries") for n in (0, 3))))),
     of(contact.NonlinearMode, lambda: fields_of(bent()),

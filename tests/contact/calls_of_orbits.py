@@ -6,11 +6,17 @@ from collections.abc import Callable
 
 import numpy as np
 from calls_of_beam import INF, NAN, each, of, told
-from calls_of_contact import EQ_1, LOADED, THREE_MODES, UNDRIVEN, at, nordmark
+from calls_of_contact import EQ_1, LOADED, OFF_STROBE, THREE_MODES, UNDRIVEN, at, nordmark
 from cases_of_calls import GAP, HERTZ, NEWTON
 
 import contact
 from contact import Regime, orbits
+
+# an orbit of another period, of the same one with more touches, and of an oscillator with another gap
+P4 = told(dataclasses.replace(HERTZ.family, period=4).at_speed(0.1), "has 4 drive periods; it must have 5")
+TWICE = told(dataclasses.replace(HERTZ.orbit, record=np.tile(HERTZ.orbit.record, (2, 1))), "has 2 touches")
+WIDER = dataclasses.replace(HERTZ.oscillator, stop=contact.Stop(gap=0.0108, law=HERTZ.oscillator.stop.law))
+FOREIGN = told(HERTZ.family.of(WIDER).at_speed(HERTZ.speed), "oscillator of the start is not")
 
 
 def at_event(derivatives: Callable[..., object]) -> Callable[..., None]:
@@ -61,6 +67,13 @@ ORBITS = (
     of(orbits.KickFamily.orbits, lambda c: dict(self=c.kicks, excess=0.01), over="family"),
     of(orbits.KickFamily.kick, lambda c: dict(self=c.kicks, speed=c.speed), over="speeds",
        kind=dict(speed="fast"), value=dict(speed=each(0.0, -1.0, INF))),
+    of(orbits.KickFamily.kick, lambda c: dict(self=c.kicks, speed=c.speed, deviations=np.zeros((1, 2))),
+       name="KickFamily.kick, from a state", over="family", kind=dict(deviations="rest"),
+       value=dict(deviations=each(np.zeros((2, 2)), [[NAN, 0.0]]))),
+    of(orbits.KickFamily.error, lambda c: dict(self=c.kicks, orbit=c.kicked), over="family",
+       kind=dict(orbit=each(None, HERTZ.orbit))),
+    of(orbits.KickFamily.orbit_of, lambda c: dict(self=c.kicks, kick=c.kicked.kick), over="family",
+       name="KickFamily.orbit_of, refused", kind=dict(kick=each(None, HERTZ.kicked))),
     *(of(getattr(orbits.KickFamily, name), lambda c, given=given: dict(self=c.kicks) | given(c),
          name=f"KickFamily.{name}", over="speeds") for name, given in KICK_CALLS.items()),
     of(orbits.Shooting, lambda: dict(oscillator=HERTZ.oscillator, period=5),
@@ -72,12 +85,13 @@ ORBITS = (
        name="Shooting.orbit", over="speeds"),
     of(orbits.Shooting.at_speed, lambda c: dict(self=c.family, speed=c.speed),
        name="Shooting.at_speed", over="speeds",
-       kind=dict(speed=None, near=3), value=dict(speed=each(0.0, -0.1))),
+       kind=dict(speed=None, near=3), value=dict(speed=each(0.0, -0.1), near=P4)),
     of(orbits.Shooting.at_speed, lambda c: dict(
            self=orbits.Shooting(oscillator=c.oscillator, period=2, impacts=3), speed=2 * c.speed),
        name="Shooting.at_speed, three touches", over="family"),
     of(orbits.Shooting.at_excess, lambda c: dict(self=c.family, excess=1.01 * c.orbit.excess, near=c.orbit),
-       name="Shooting.at_excess", over="speeds", kind=dict(near=None), value=dict(excess=each(-1.5, NAN))),
+       name="Shooting.at_excess", over="speeds", kind=dict(near=None),
+       value=dict(excess=each(-1.5, NAN), near=P4)),
     of(orbits.Shooting.at_excess, lambda c: dict(self=c.family, excess=0.01, near=c.orbit),
        name="Shooting.at_excess, far away", over="speeds"),
     of(orbits.Shooting.from_state, lambda c: dict(
@@ -91,10 +105,12 @@ ORBITS = (
                                      step=0.3), over="speeds",
        kind=dict(family=None, start=0.1),
        value=dict(low=each(told(0.2, "low and high are 0.2 and"), told(0.0, "low and high are 0.0 and")),
-                  high=told(0.06, "low and high are"), step=told(0.0, "step is 0.0 [1]"))),
+                  start=each(P4, TWICE, FOREIGN), high=told(0.06, "low and high are"),
+                  step=told(0.0, "step is 0.0 [1]"))),
     of(orbits.first_event, lambda c: dict(family=c.family, start=c.orbit, lowest=-0.5), over="family",
-       kind=dict(family=None, start=0.1), value=dict(lowest=-1.5)),
-    *(of(call, lambda c: dict(family=c.family), over="family", kind=dict(family=NO_FAMILY, near=0.1))
+       kind=dict(family=None, start=0.1), value=dict(lowest=-1.5, start=each(P4, TWICE, FOREIGN))),
+    *(of(call, lambda c: dict(family=c.family), over="family", kind=dict(family=NO_FAMILY, near=0.1),
+         value=dict(near=P4))
       for call in (orbits.fold_of, orbits.folds_of, orbits.lowest_of)),
     of(orbits.fold_of, lambda c: dict(family=c.family, near=c.orbit), name="fold_of, near an orbit",
        over="family"),
@@ -125,7 +141,7 @@ ORBITS = (
          value=dict(largest_period=0, most_cycles=-1, tolerance=-1.0))
       for name, prove in {"settle": True, "settle, unproved": False}.items()),
     *(of(call, lambda c: dict(strobed=c.strobed, excess=1e-3, most_cycles=256), over="motion",
-         kind=dict(strobed=NO_MAP), value=dict(excess=-2.0, most_cycles=-1))
+         kind=dict(strobed=NO_MAP), value=dict(excess=-2.0, most_cycles=-1, below=each(0.5, 0.0, NAN)))
       for call in (orbits.born, orbits.born_period)),
     of(orbits.fold_excess, lambda c: dict(strobed=c.strobed, period=5), over="motion",
        kind=dict(strobed=each(*NO_MAP, 5)), value=dict(period=2.5)),
@@ -150,7 +166,8 @@ ORBITS = (
        dict(frequency=22.2, excesses=[-1e-3]), name="AmplitudeScan, a column", kind=dict(excesses="all"),
        value=dict(frequency=0.0, excesses=told([1e-3, 0.0], "excesses must be"))),
     of(orbits.strobe_derivatives, lambda c: dict(strobed=c.below, state=c.below.steady(), period=2),
-       over="motion", kind=dict(strobed=None, state=[0.0, 0.0]), value=dict(period=each(0, 1.5))),
+       over="motion", kind=dict(strobed=None, state=[0.0, 0.0]),
+       value=dict(period=each(0, 1.5), state=OFF_STROBE)),
     of(orbits.cloud, lambda c: dict(
            strobed=c.below, state=c.below.steady(), period=2, deviation=1e-3, memory=0.5), over="motion",
        kind=dict(strobed=3.0), value=dict(deviation=each(-1e-4, NAN), memory=each(1.0, -0.1, NAN), period=0)),

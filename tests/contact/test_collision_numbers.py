@@ -11,6 +11,7 @@ from oscillators import GAP, OMEGA, modes_on_stop, newton, slow
 from scipy.optimize import brentq
 from simulated_orbit import beam
 
+from beam import InvalidValue
 from contact.collision import before_collision, collisions, first_collision
 from contact.laws import ContactLaw, HertzContact, HuntCrossley, LinearContact
 from contact.simulation import simulate
@@ -152,6 +153,13 @@ def test_minimum_of_the_outgoing_motion_ends_a_collision(before_minimum: float) 
     assert [c.impacts for c in found] == ([2] if before_minimum > 0 else [1, 1])
     assert found[0].kick == pytest.approx(1.5, rel=1e-12)
     assert found[0].restitution == pytest.approx(0.5, rel=1e-12)
+
+
+def test_touches_of_another_program_need_all_their_numbers() -> None:
+    with pytest.raises(InvalidValue, match="numbers has loss; it must have approach, kind, loss, rebound"):
+        Impacts.of_states(
+            beam(22.2, HERTZ, modes=1), times=np.zeros((2, 0)), states=np.zeros((2, 0, 2, 1)), loss=[]
+        )
 
 
 @pytest.mark.parametrize("frequency", [20.90, 22.20, 23.40])

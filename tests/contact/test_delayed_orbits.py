@@ -1,11 +1,13 @@
 """Orbits of Eq. (1) with a touch that waits: long waits, and short ones as in the letter's map."""
 
 import math
+import pickle
 from functools import partial
 
 import numpy as np
 import oscillators
 import pytest
+from cases_of_calls import LAWS, Case, oscillator_of
 from oscillators import apart
 from simulated_orbit import differences, touches
 
@@ -99,3 +101,13 @@ def test_a_wait_of_all_periods_is_refused() -> None:
     assert KickFamily(oscillator=equation_1(20.90, law), period=4).orbit(0.1).kick.duration == law.delay
     with pytest.raises(ValueError, match="speed is nan"):
         kicks.orbit(math.nan)
+
+
+def test_an_error_with_an_orbit_whose_law_has_functions_leaves_its_process() -> None:
+    """As itself, with its sentence, time, gap and velocity; the orbit stays behind."""
+    orbit = Case(oscillator_of(LAWS["delayed by table"], 1)).orbit
+    error = orbit.failure(contact.BranchEnded, "it ends here")
+    error.orbit = orbit
+    again = pickle.loads(pickle.dumps(error))
+    assert type(again) is contact.BranchEnded and again.orbit is None and str(again) == str(error)
+    assert (again.time, again.gap, again.velocity) == (error.time, error.gap, error.velocity)

@@ -148,6 +148,8 @@ def test_a_model_without_an_answer_is_infinitely_far_off():
     assert error(np.array([-1e-4, 5.0]), np.array([-2e-4, 5.0])) == pytest.approx(0.4)  # of 2.5e-4
     coarse = Choice(level="spring", law="newton", modes=40, mesh=2)
     assert search_of("kick").error(coarse) == math.inf
+    row = search_of("frequency 41").least(1e-3)  # of 40 modes
+    assert not row.reached and row.error == math.inf and row.least == "none"
 
 
 @pytest.mark.parametrize("count", [3, pytest.param(7, marks=pytest.mark.slow)])

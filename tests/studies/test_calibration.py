@@ -10,7 +10,9 @@ import pytest
 from beam import StripDamping
 from studies.physics.calibration import (
     ACCURACY,
+    Targets,
     calibrate,
+    calibrate_all,
     calibrate_damping,
     calibrate_thickness,
     solve_for,
@@ -85,6 +87,10 @@ def test_other_kinds_of_damping_are_scaled_as_a_whole(changes):
     [
         (lambda scene: calibrate_thickness(scene, 1e-5), ["spring.thickness_m", "free period", "1e-05 s"]),
         (lambda scene: calibrate_thickness(scene, math.nan), ["free period", "finite"]),
+        (
+            lambda scene: calibrate_all(scene.replace({"tip.mass_kg": 0.0}), Targets.of(scene)),
+            ["tip.mass_kg is 0.0 kg", "above zero"],
+        ),
         (lambda scene: calibrate_damping(scene, 1e3), ["spring.tape_loss_factor", "1000 1/s"]),
         (lambda scene: calibrate_damping(scene, -1.0), ["decay rate of mode 1", "not -1.0"]),
         (lambda scene: calibrate_damping(scene.replace({"spring.tape_thickness_m": 0.0}), 3.0), ["tape"]),
@@ -102,6 +108,11 @@ def test_what_cannot_be_fitted_is_refused_in_one_sentence(fit, words):
     assert "\n" not in str(caught.value)
     for word in words:
         assert word in str(caught.value)
+
+
+def test_the_gap_is_fitted_at_the_middle_drive_frequency_of_the_scene():
+    found = [Targets.of(scene).frequency_hz for scene in (LETTER, read_scene("steel_ruler"))]
+    assert found == [22.2, 7.87]
 
 
 def test_a_jump_is_no_solution():

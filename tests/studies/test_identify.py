@@ -189,6 +189,13 @@ def test_a_file_that_is_no_record_or_a_poor_one_is_refused_in_a_sentence(run_stu
     assert ran.code == 2 and re.search(REFUSED[text], ran.err) and ran.err.count("\n") == 1, ran.err
 
 
+def test_an_example_that_cannot_be_fitted_is_a_failed_cell(run_study, monkeypatch):
+    """The study has made the record itself; a gap of 20 um hides every impact in the read-out noise."""
+    monkeypatch.setattr("studies.measurement.identify.__main__.EXAMPLES", {"strobe": "one_mode"})
+    ran = run_study("identify", "--quick", "--set", "stop.gap_m=2e-5")
+    assert ran.code == 3 and ran.summary["rows"] == [] and "strobe" in ran.err
+
+
 def test_the_command_line_takes_a_record_and_leaves_a_scene(run_study, tmp_path, made):
     (tmp_path / "mine.csv").write_text(synthetic("strobe", made["one_mode"], seed=2).text())
     ran = run_study("identify", "--quick", str(tmp_path / "mine.csv"), "--fit", "gap", "restitution")

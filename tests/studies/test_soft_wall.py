@@ -63,6 +63,13 @@ def test_period_doubling_against_the_closed_form(frequency):
     assert near[1] < 0.02 * near[0] and near[2] < 1e-5
 
 
+def test_a_doubling_that_rounding_hides_has_a_bracket():
+    """At excess 3e-12 the multipliers repeat to 1e-5 only: the branch calls its event undecided."""
+    row = doubling_of(wall_at(20.9, 1e6))
+    assert (row.event, row.excess) == ("undecided", None)
+    assert row.stable_at < row.closed_form < row.unstable_at < 1.1 * row.stable_at
+
+
 def test_a_soft_enough_wall_keeps_p1_stable():
     wall = wall_at(22.2, 2.0)
     least = 1.0 + (float(wall.oscillator.model.omega[0]) * wall.sums[1]) ** -2  # there s = Lambda

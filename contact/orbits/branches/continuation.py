@@ -22,7 +22,7 @@ from contact.orbits.branches.family_curve import (
     downhill,
     whole_branch,
 )
-from contact.orbits.families.continuable_family import ContinuableFamily
+from contact.orbits.families.continuable_family import ContinuableFamily, require_orbit
 from contact.orbits.families.family import PeriodicOrbit
 from contact.orbits.families.kick import SPEEDS
 
@@ -33,10 +33,11 @@ LOSSES = ("torus", "period doubling", "branch point", "undecided")
 """Events other than folds and grazings at which orbits can lose their stability."""
 
 
-def _require(family: object, near: object = None) -> None:
-    """TypeError unless this is a family to follow and `near` one of its orbits or None."""
+def _require(family: ContinuableFamily, near: object = None) -> None:
+    """Refuse what is no family to follow, and a `near` that is neither an orbit near it nor None."""
     require_kind("family", family, ContinuableFamily, "a Shooting family")
-    require_kind("near", near, (PeriodicOrbit, type(None)), "a PeriodicOrbit or None")
+    if near is not None:
+        require_orbit(family, "near", near)
 
 
 def follow(
@@ -48,7 +49,7 @@ def follow(
     rises.  `step` is the longest step of arc length; near grazing, of log v.
     """
     _require(family)
-    require_kind("start", start, PeriodicOrbit, "a PeriodicOrbit")
+    require_orbit(family, "start", start, member=True)
     for name, value in (("low", low), ("high", high)):
         require_within(name, value, "m/s")
     require_within("step", step, "[1]", low=SMALLEST, high=GREATEST_STEP)
@@ -80,7 +81,7 @@ def first_event(family: ContinuableFamily, start: PeriodicOrbit, lowest: float) 
     `orbit`.
     """
     _require(family)
-    require_kind("start", start, PeriodicOrbit, "a PeriodicOrbit")
+    require_orbit(family, "start", start, member=True)
     require_within("lowest", lowest, "[1]", above=-1)
     last = start
     for leg, curve in downhill(family, start, FASTEST):

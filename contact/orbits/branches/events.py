@@ -51,8 +51,10 @@ class Event:
     Parameters
     ----------
     kind : str
-        "fold", "period doubling", "torus", "branch point" or "grazing"; or "undecided", where two events, or
-        one and the end of the range, lie closer than 1e-6 of arc length.
+        "fold", "period doubling", "torus", "branch point" or "grazing"; or "undecided": a number changes
+        sign, but no orbit is found there (`orbit` is the one before), the orbit is not on the curve of its
+        neighbours, it has no multiplier within 1e-6 of its place, or another event or the end of the range
+        is closer than 1e-6 of arc length.
     orbit, parameter : PeriodicOrbit, float or None
         The orbit there, and its place on a path (``contact.orbits.branches.path``).
     """

@@ -14,7 +14,7 @@ from typing import Self
 
 import numpy as np
 
-from beam.parameters import Array, is_whole, require, require_kind, require_within, shown
+from beam.parameters import Array, require, require_kind, require_whole, require_within
 from contact.errors import NotPeriodic
 from contact.orbits.families.equations import Iterate, driven_at, newton, shot_of, sizes_of
 from contact.orbits.families.family import PeriodicOrbit
@@ -38,8 +38,7 @@ class ContinuableFamily:
     impacts: int = 1
 
     def __post_init__(self) -> None:
-        words = f"impacts is {shown(self.impacts)}; it must be a whole number, one or more"
-        require(is_whole(self.impacts, 1), words)
+        require_whole("impacts", self.impacts, "touches")
         _ = self.kicks
 
     def of(self, oscillator: ImpactOscillator) -> Self:
@@ -116,14 +115,15 @@ class ContinuableFamily:
         if Newton's method finds no orbit.
         """
         require_within("speed", speed, "m/s", above=0)
-        require_kind("near", near, (PeriodicOrbit, type(None)), "a PeriodicOrbit or None")
+        if near is not None:
+            require_orbit(self, "near", near)
         start = (near or self.kicks.orbit(speed)).deviations
         return self._solve(self.unknowns(start, speed), speed=speed)
 
     def at_excess(self, excess: float, near: PeriodicOrbit) -> PeriodicOrbit:
         """The orbit at F/F_g - 1 = `excess` that is next to `near`."""
         require_within("excess", excess, "[1]", above=-1)
-        require_kind("near", near, PeriodicOrbit, "a PeriodicOrbit")
+        require_orbit(self, "near", near)
         return self._solve(self.unknowns(near.deviations, near.speed), excess=excess)
 
     def from_state(self, state: State) -> PeriodicOrbit:
@@ -142,3 +142,20 @@ class ContinuableFamily:
     def orbit(self, speed: float) -> PeriodicOrbit:
         """The orbit with approach velocity `speed` [m/s], found from the kick description."""
         return self.at_speed(speed)
+
+
+def require_orbit(family: ContinuableFamily, name: str, orbit: object, *, member: bool = False) -> None:
+    """Refuse what is no orbit, or one of other modes or of a period that does not divide that of the family.
+
+    A `member` has the period and the touches of the family and, to rounding, its oscillator at any amplitude.
+    """
+    known: PeriodicOrbit = require_kind(name, orbit, PeriodicOrbit, "a PeriodicOrbit")
+    pair = known.oscillator, family.oscillator
+    period = known.period if family.period % known.period == 0 and not member else family.period
+    counts = [("drive periods", known.period, period), ("modes", *(one.n_modes for one in pair))]
+    for what, found, valid in [*counts, ("touches", known.impacts, family.impacts)][: 3 if member else 2]:
+        require(found == valid, f"{name} has {found} {what}; it must have {valid}, like the family")
+    numbers = zip(*(one.with_amplitude(1.0).motion() for one in pair), strict=True)
+    same = all(np.shape(a) == np.shape(b) and np.allclose(a, b, 1e-9, 1e-12) for a, b in numbers)
+    words = "is not that of the family; it must be the same but for the amplitude of its drive"
+    require(same or not member, f"oscillator of the {name} {words}")

@@ -19,7 +19,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from beam.parameters import Array, require, require_array, require_within, shown
+from beam.parameters import Array, require, require_array, require_kind, require_within, shown
 from contact.flight.modal_flow import free_flow
 from contact.flight.variation import variation
 from contact.orbits.families.single_impact import Kick, SingleImpactFamily, SingleImpactOrbit
@@ -52,14 +52,15 @@ class KickFamily(SingleImpactFamily):
     collision: Callable[[float], Kick] | None = None
 
     def kick(self, speed: float, deviations: Array | None = None) -> Kick:
-        """One collision with approach velocity `speed` [m/s], from rest or from given `deviations`.
+        """One collision with approach velocity `speed` [m/s], from rest or given `deviations`, (n_modes, 2).
 
         From rest, a collision under `DelayedRestitution` is the one that repeats once in m drive periods.
         NotPeriodic is raised if it does not end within half a drive period, or its delay takes m periods.
         """
         require_within("speed", speed, "m/s", above=0)
         if deviations is not None:
-            return self._simulated(speed, deviations)
+            shape, unit = (self.oscillator.n_modes, 2), "m kg^0.5 and m kg^0.5/s"
+            return self._simulated(speed, require_array("deviations", deviations, unit, shape=shape))
         if self.collision is not None:
             return self.collision(speed)
         if waits(motion := self.oscillator.motion()):
@@ -87,6 +88,7 @@ class KickFamily(SingleImpactFamily):
 
     def error(self, orbit: SingleImpactOrbit) -> float:
         """Estimated error of the excess of an orbit: its change if the collision starts from the ringing."""
+        require_kind("orbit", orbit, SingleImpactOrbit, "a SingleImpactOrbit")
         ringing = orbit.deviations.reshape(2, -1).T
         return self.orbit_of(self.kick(orbit.speed, ringing)).excess - orbit.excess
 

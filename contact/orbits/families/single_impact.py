@@ -169,6 +169,7 @@ class SingleImpactFamily(ABC):
 
     def orbit_of(self, kick: Kick) -> SingleImpactOrbit:
         """The orbit on which `kick` happens once in m drive periods."""
+        require_kind("kick", kick, Kick, "a Kick")
         before, gap = self.closed(kick.jump), self.oscillator.stop.gap
         p, r = self.oscillator.motion().tip(before)
         rate = kick.speed - r

@@ -45,6 +45,7 @@ def strobe_derivatives(strobed: Strobed, state: State | Array, period: int) -> l
         return [(jacobian, np.array([strobed.rho_per_factor, 0.0])) for jacobian, _span in jacobians]
     oscillator = strobed.oscillator
     here, found = require_kind("state", state, State, "a State"), list[tuple[Array, Array]]()
+    strobed.orbit(here, 0)  # which refuses a state that is not at a strobe
     change, ones = Change(amplitude=oscillator.driven.amplitude), np.ones(oscillator.n_modes)
     weight = strobed.coordinates(State(displacement=ones, velocity=ones))
     for _ in range(period):

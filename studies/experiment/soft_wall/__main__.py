@@ -10,7 +10,8 @@ K = 10 ... 10^6:
     kick       of one collision against the peak h over the wall: J = (4/3) (K - 1) Omega^2 sqrt(2/a) h^(3/2)
                below h = (3/2) a/((K - 1) Omega^2), a = omega^2 gap, and the square root above
     doubling   excess at which p1, which survives its first touch, loses stability by a multiplier -1: by
-               shooting, against a closed form that goes like K^(-2)
+               shooting, against a closed form that goes like K^(-2); where rounding of the multipliers leaves
+               it "undecided", the excess at which p1 is stable, and at which it is unstable
 
 and for the beam with Hertz contact the excess at which the kick leaves the square root, at which p1 loses its
 stability, and at which a multiplier passes -1. The study compares the loss of stability with the letter's

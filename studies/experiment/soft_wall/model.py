@@ -18,6 +18,8 @@ from studies.shell.scene import Scene, approach_speed, beam_at
 SPAN = 3.0
 """The doubling is looked for between a third and three times the approach velocity that the formula gives."""
 
+CERTAIN, UNDECIDED = "period doubling", "undecided"  # events of a branch
+
 RATIO = 1.05
 """Ratio of two excesses between which a local power is taken."""
 
@@ -40,11 +42,18 @@ class Kick:
 
 @dataclass(frozen=True, kw_only=True)
 class Doubling:
-    """Excess of the period doubling of p1: by shooting and in closed form."""
+    """Excess of the period doubling of p1: by shooting and in closed form.
+
+    Where rounding of the multipliers leaves the `event` undecided, p1 is stable at the excess `stable_at` and
+    unstable at `unstable_at`.
+    """
 
     frequency_hz: float
     hardness: float
+    event: str
     excess: float | None
+    stable_at: float | None
+    unstable_at: float | None
     closed_form: float | None
 
 
@@ -83,13 +92,13 @@ def kicks_of(wall: SoftWall, excesses: np.ndarray) -> list[Kick]:
     ]
 
 
-def doubling_near(oscillator: ImpactOscillator, peak: float) -> PeriodicOrbit | None:
+def doubling_near(oscillator: ImpactOscillator, peak: float, kind: str = CERTAIN) -> PeriodicOrbit | None:
     """The period doubling of p1 by shooting, next to where its peak is `peak` gaps over the wall."""
     family = Shooting(oscillator=oscillator, period=1)
     speed = oscillator.unit_speed * math.sqrt(2.0 * peak)
     low, high = speed / SPAN, SPAN * speed
     branch = follow(family, family.at_speed(speed), low=low, high=high, step=math.log(SPAN))
-    return next(iter(branch.of_kind("period doubling")), None)
+    return next(iter(branch.of_kind(kind)), None)
 
 
 FAINTEST = 1e-6
@@ -126,11 +135,21 @@ def loss_of_stability(oscillator: ImpactOscillator, doubling: PeriodicOrbit) -> 
 def doubling_of(wall: SoftWall) -> Doubling:
     """Period doubling of p1 beside the formula; where that has none it is looked for at z = 1, its last."""
     closed = wall.doubling()
-    orbit = doubling_near(wall.struck, wall.peak_of(1.0) if closed is None else closed[0])
+    peak = wall.peak_of(1.0) if closed is None else closed[0]
+    orbit = doubling_near(wall.struck, peak)
+    unsure = None if orbit else doubling_near(wall.struck, peak, UNDECIDED)
+    beside = dict[bool, float]()
+    if unsure:
+        for ratio in (0.99, 1.01):  # rounding of the multipliers, up to 1e-4, decides nothing there
+            one = Shooting(oscillator=wall.struck, period=1).at_speed(unsure.speed * ratio, unsure)
+            beside[one.stable] = one.excess
     return Doubling(
         frequency_hz=wall.frequency,
         hardness=wall.hardness,
-        excess=None if orbit is None else orbit.excess,
+        event=CERTAIN if orbit else UNDECIDED if unsure else "none",
+        excess=orbit.excess if orbit else None,
+        stable_at=beside.get(True),
+        unstable_at=beside.get(False),
         closed_form=None if closed is None else closed[1],
     )
 

@@ -43,7 +43,7 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from beam import InvalidValue
+from beam import InvalidValue, Refusal
 from contact import ImpactOscillator
 from studies.measurement.identify import coverage as covering
 from studies.measurement.identify import figure
@@ -170,12 +170,17 @@ def identify(
         raise InvalidValue(f"fit names {' '.join(fit)}, but no record is given: put its file before --fit")
     else:
         given = examples(scene, run, delay)
-    found = {
-        name: fitted(
-            one, driven(one, oscillator, fit), fit or usual(one, oscillator), noise=noise, free=sensor
-        )
-        for name, (one, oscillator) in given.items()
-    }
+    found = dict[str, Fit]()
+    for name, (rows_of, oscillator) in given.items():
+        names, at = fit or usual(rows_of, oscillator), driven(rows_of, oscillator, fit)
+        try:
+            found[name] = fitted(rows_of, at, names, noise=noise, free=sensor)
+        except Refusal as error:
+            if record is not None:
+                raise
+            run.failed(name, error)  # the study made this record: no wrong use
+    if not found:
+        return {"rows": []}
     results = report(run, found)
     for name, one in found.items():
         if one.record.kind == "displacement" and (rows := in_step(one.record, one.oscillator)):

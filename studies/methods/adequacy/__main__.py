@@ -38,9 +38,8 @@ def adequacy(scene: Scene, run: Run) -> Mapping[str, object]:
         row = search.least(search.tolerance)
         rows.append(row)
         if not row.reached:
-            run.say(
-                f"no model gives {quantity} at {frequency:g} Hz to {row.tolerance:g}: {row.error:.1e} is left"
-            )
+            left = f" to {row.tolerance:g}: {row.error:.1e} is left" if math.isfinite(row.error) else ""
+            run.say(f"none of the models gives {quantity} at {frequency:g} Hz{left}")
     shown = ("quantity", "frequency_hz", "tolerance", "error", "error_one_less", "least")
     run.table("least", rows, "The least model for each question.", of=Row, show=shown)
     run.figure(

@@ -81,7 +81,8 @@ QUANTITIES: Mapping[str, tuple[Ask, Distance, str, float]] = {
 class Row(Choice):
     """The least model for a question, or the reference where none is good enough (`reached` is then false).
 
-    Errors are those of ``Search.error``, in `unit`; `error` has that of the reference itself added.
+    Errors are those of ``Search.error``, in `unit`; `error` has that of the reference itself added.  It is
+    infinite, and `least` is "none", where the reference has no answer.
     """
 
     quantity: str
@@ -175,6 +176,7 @@ class Search:
         while found:
             choice = min(found, key=lambda one: one.cost)
             found = [one for one in self.smaller(choice) if enough(one)]
+        error = self.error(choice) + own
         return Row(
             **asdict(choice),
             quantity=self.quantity,
@@ -182,10 +184,10 @@ class Search:
             unit=self.unit,
             tolerance=tolerance,
             reached=reached,
-            error=self.error(choice) + own,
+            error=error,
             error_one_less=min(map(self.error, self.smaller(choice)), default=None),
             parts={**self.parts(choice), "reference": own},
-            least=choice.words,
+            least=choice.words if math.isfinite(error) else "none",
         )
 
     def _below_corner(self, corner: Choice, enough: Callable[[Choice], bool]) -> Iterator[Choice]:
