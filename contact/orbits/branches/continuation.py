@@ -5,6 +5,7 @@ the first touch (``contact.orbits.families.continuable_family``).  Down to grazi
 factor.  With several touches v can turn round along the curve (``contact.orbits.branches.branch``).
 """
 
+import math
 from dataclasses import replace
 from itertools import pairwise
 
@@ -17,7 +18,9 @@ from contact.orbits.branches.events import Arc, Event, event_of
 from contact.orbits.branches.family_curve import (
     GREATEST_SPEED,
     FamilyCurve,
+    at_bound,
     at_graze,
+    bound_reached,
     branch_ended,
     downhill,
     whole_branch,
@@ -25,9 +28,9 @@ from contact.orbits.branches.family_curve import (
 from contact.orbits.families.continuable_family import ContinuableFamily
 from contact.orbits.families.family import PeriodicOrbit
 from contact.orbits.families.kick import SPEEDS
+from contact.orbits.families.single_impact import SingleImpactOrbit
 
 GREATEST_STEP = 10.0  # longest step of log v: over four decades at once
-FASTEST = 100.0  # highest approach velocity, over 2 pi f gap, of an event sought; at least twice the start's
 
 LOSSES = ("torus", "period doubling", "branch point", "undecided")
 """Events other than folds and grazings at which orbits can lose their stability."""
@@ -83,12 +86,14 @@ def first_event(family: ContinuableFamily, start: PeriodicOrbit, lowest: float) 
     require_kind("start", start, PeriodicOrbit, "a PeriodicOrbit")
     require_within("lowest", lowest, "[1]", above=-1)
     last = start
-    for leg, curve in downhill(family, start, FASTEST):
+    for leg, curve in downhill(family, start):
         if leg.events:
             return event_of(curve, leg.events[0])
         last = leg.points[-1].orbit if leg.points else last
         if last.excess < lowest:
             return None
+        if leg.ended and at_bound(last, curve):
+            raise bound_reached(last, "no event was met")
         if leg.ended and not at_graze(leg.ended, last):
             raise branch_ended(last, f"the branch ends before an event: {leg.ended}")
     return Event(kind="grazing", orbit=last)
@@ -97,7 +102,8 @@ def first_event(family: ContinuableFamily, start: PeriodicOrbit, lowest: float) 
 def fold_of(family: ContinuableFamily, near: PeriodicOrbit | None = None) -> PeriodicOrbit | None:
     """The fold of smallest amplitude, where the family's downward scan ends.
 
-    None is returned for one reason only: the branch was followed to its graze and has no fold.
+    None is returned for one reason only: the branch has no fold.  It was followed to its graze, and up to
+    an approach velocity of 1000 times 2 pi f gap, where its amplitude rises with the speed.
 
     Where contact is soft, at an excess of some 1e-5 and less, a branch can have several folds.  It can go on
     below the lowest of them until another touch grazes.  A fold below grazing is the orbit of smallest
@@ -112,10 +118,11 @@ def fold_of(family: ContinuableFamily, near: PeriodicOrbit | None = None) -> Per
         often its motion touches the stop.
     near : PeriodicOrbit, optional
         An orbit close to the fold, such as the fold at a neighbouring frequency.  The first fold downhill
-        from it is taken for the lowest.  Otherwise the kick description is searched over all speeds.
+        from it is taken for the lowest.  Otherwise it starts from the fold of the kick description.
 
-    BranchEnded is raised if there is no orbit to start from; if the branch is lost; or if it has no fold and
-    its stable orbits end by a torus or a period doubling.  The `orbit` of the error is the last one.
+    BranchEnded is raised if there is no orbit to start from; if the branch is lost; if it reaches the
+    greatest speed and its amplitude does not yet rise there; or if it has no fold and its stable orbits end
+    by a torus or a period doubling.  The `orbit` of the error is the last one.
     """
     fold, losses = lowest_fold(family, near)
     if losses:
@@ -129,10 +136,12 @@ def lowest_fold(
 ) -> tuple[PeriodicOrbit | None, list[Event]]:
     """The fold of `fold_of`, or None and the events by which stable orbits end, by falling excess."""
     fold, losses = _fold_of_these_touches(family, near)
-    kick = None if fold is None or fold.admissible else family.kicks.fold()
-    if fold is None or kick is None or kick.kick.touches == fold.impacts:
+    if fold is None or fold.admissible:
         return fold, losses
     try:
+        kick = family.kicks.fold()
+        if kick is None or kick.kick.touches == fold.impacts:
+            return fold, losses
         other = _fold_of_these_touches(family.with_impacts(kick.kick.touches), None)[0]
     except ContactError:
         return fold, []
@@ -157,10 +166,10 @@ def _fold_of_these_touches(
 
 
 def folds_of(family: ContinuableFamily, near: PeriodicOrbit | None = None) -> tuple[PeriodicOrbit, ...]:
-    """All folds of the branch, by rising approach velocity from 1e-6 to 2 times 2 pi f gap.
+    """All folds of the branch, by rising approach velocity from 1e-6 to 1000 times 2 pi f gap.
 
     The branch is followed through `near`, or else through the first orbit found from the kick description;
-    BranchEnded is raised if there is none.  Between two steps a pair of folds is seen when the rate comes
+    BranchEnded is raised as in `fold_of`.  Between two steps a pair of folds is seen when the rate comes
     near zero.
     """
     _require(family, near)
@@ -182,11 +191,18 @@ def lowest_of(family: ContinuableFamily, near: PeriodicOrbit | None = None) -> E
 
 
 def orbits_at(family: ContinuableFamily, excess: float) -> tuple[PeriodicOrbit, ...]:
-    """The orbits at F/F_g - 1 = `excess` on the branch of `folds_of`, by rising approach velocity."""
+    """The orbits at F/F_g - 1 = `excess` on the branch of `folds_of`, by rising approach velocity.
+
+    BranchEnded is raised as there, and if another orbit lies beyond the bounds of the speed.
+    """
     require_within("excess", excess, "[1]", above=-1)
     _require(family)
-    curve, points, _ = whole_branch(family, None)
+    curve, points, branch = whole_branch(family, None)
     found = []
+    for last in (branch.orbits[0], branch.orbits[-1]):
+        slow = family.impacts == 1 and math.isclose(last.speed, curve.slowest)  # below it lies excess 0
+        if (at_bound(last, curve) and last.excess < excess) or (slow and 0.0 < excess / last.excess < 1.0):
+            raise bound_reached(last, f"an orbit at excess {excess:g} lies beyond it")
     for start, end in pairwise(points):
         a, b = (point.oriented(end.x - start.x) for point in (start, end))
         turns = [Arc(curve, a, b).root(lambda point: point.rate)] if a.rate * b.rate < 0.0 else []
@@ -196,35 +212,56 @@ def orbits_at(family: ContinuableFamily, excess: float) -> tuple[PeriodicOrbit, 
     return tuple(sorted(found, key=lambda orbit: orbit.speed))
 
 
+def fold_of_the_kicks(family: ContinuableFamily) -> SingleImpactOrbit | None:
+    """The fold of the kick description at any speed of the search, the usual ones first."""
+    return family.kicks.fold() or family.kicks.fold((SPEEDS[1] / 2.0, GREATEST_SPEED))
+
+
 def _fold_near(family: ContinuableFamily, near: PeriodicOrbit | None) -> PeriodicOrbit | None:
-    """The first fold downhill from `near`, or from the fold of the kick description."""
+    """The first fold downhill from `near`, or from the fold of the kick description.
+
+    None is returned where neither leads to a fold: then the whole branch is followed, or says why not.
+    """
     _require(family, near)
-    guess = near or family.kicks.fold() or family.kicks.fold((SPEEDS[0], GREATEST_SPEED))
-    if guess is None:
-        return None
-    start = family.at_speed(guess.speed, near)
-    for leg, _ in downhill(family, start, GREATEST_SPEED):
-        for event in leg.events:
-            if event.kind == "fold":
-                return event.point.orbit
+    try:
+        guess = near or fold_of_the_kicks(family)
+        if guess is None:
+            return None
+        for leg, _ in downhill(family, family.at_speed(guess.speed, near)):
+            for event in leg.events:
+                if event.kind == "fold":
+                    return event.point.orbit
+    except ContactError:
+        pass
     return None
 
 
 def fold_along_frequency(
     family: ContinuableFamily, frequencies: np.ndarray, near: PeriodicOrbit | None = None
-) -> list[PeriodicOrbit | None]:
-    """The folds at `frequencies` [Hz], each started from the one before; None where there is none."""
+) -> list[PeriodicOrbit | ContactError | None]:
+    """The results of `fold_of` at `frequencies` [Hz], each started from the fold before.
+
+    Each is the fold, None where the branch has none, or the error that says why the search failed.
+    """
     _require(family, near)
-    found: list[PeriodicOrbit | None] = []
+    found: list[PeriodicOrbit | ContactError | None] = []
     for frequency in require_array("frequencies", frequencies, "Hz", dimensions=1, words="drive frequencies"):
         drive = replace(family.oscillator.driven, frequency=float(frequency))
         here = family.of(replace(family.oscillator, drive=drive))
-        fold = None
         for start in dict.fromkeys((near, None)):
-            try:
-                fold = fold or fold_of(here, start)
-            except ContactError:
-                continue
-        found.append(fold)
-        near = fold
+            result = _fold_or_error(here, start)
+            near = result if isinstance(result, PeriodicOrbit) else None
+            if near is not None:
+                break
+        found.append(result)
     return found
+
+
+def _fold_or_error(
+    family: ContinuableFamily, near: PeriodicOrbit | None
+) -> PeriodicOrbit | ContactError | None:
+    """The result of `fold_of`, or its error."""
+    try:
+        return fold_of(family, near)
+    except ContactError as error:
+        return error

@@ -62,6 +62,10 @@ class Curve(ABC):
     def parameter(self, point: Point) -> float:
         """The parameter at a point."""
 
+    def stretch(self, x: Array) -> float:
+        """Factor of the longest step at `x`, where the unknowns are large."""
+        return 1.0
+
     def solve(self, x: Array, normal: Array, touches: int) -> Point:
         """The point of the curve next to `x`, in the plane through it across `normal`."""
 
