@@ -103,7 +103,7 @@ def fold_of(family: ContinuableFamily, near: PeriodicOrbit | None = None) -> Per
     """The fold of smallest amplitude, where the family's downward scan ends.
 
     None is returned for one reason only: the branch has no fold.  It was followed to its graze, and up to
-    an approach velocity of 1000 times 2 pi f gap, where its amplitude rises with the speed.
+    an approach velocity of 100 times 2 pi f gap, where its amplitude rises with the speed.
 
     Where contact is soft, at an excess of some 1e-5 and less, a branch can have several folds.  It can go on
     below the lowest of them until another touch grazes.  A fold below grazing is the orbit of smallest
@@ -166,7 +166,7 @@ def _fold_of_these_touches(
 
 
 def folds_of(family: ContinuableFamily, near: PeriodicOrbit | None = None) -> tuple[PeriodicOrbit, ...]:
-    """All folds of the branch, by rising approach velocity from 1e-6 to 1000 times 2 pi f gap.
+    """All folds of the branch, by rising approach velocity from 1e-6 to 100 times 2 pi f gap.
 
     The branch is followed through `near`, or else through the first orbit found from the kick description;
     BranchEnded is raised as in `fold_of`.  Between two steps a pair of folds is seen when the rate comes

@@ -22,10 +22,10 @@ FIRST_STRIDE, LONGEST_STRIDE = 0.02, 0.3
 STARTS = (0.1, 0.03, 0.3, 0.01, 1.0, 10.0)
 """Approach velocities, over 2 pi f gap, at which a branch is entered where kicks show no fold."""
 
-LEAST_SPEED, GREATEST_SPEED = 1e-6, 1e3
+LEAST_SPEED, GREATEST_SPEED = 1e-6, 1e2
 """Approach velocities, over 2 pi f gap, between which a branch is searched.  Slower touches are grazes.
-Beyond the greatest one the gap is less than a thousandth of the motion.  Without a gap nothing but the drive
-has a size: the amplitude is proportional to the speed, and the branch has no further fold."""
+Beyond the greatest one the gap is about a hundredth of the motion, or less.  Without a gap the amplitude is
+proportional to the speed under Newton's law, and about so under others: no fold follows."""
 
 FAR = (
     2.0  # approach velocity, over 2 pi f gap, beyond which deviations, and so the steps, grow with the speed

@@ -22,7 +22,7 @@ class Shooting(ContinuableFamily):
     def orbits(self, excess: float) -> tuple[PeriodicOrbit, ...]:
         """The orbits at F/F_g - 1 = `excess` > -1, by rising approach speed, on the whole branch.
 
-        The branch is searched from 1e-6 to 1000 times 2 pi f gap.  BranchEnded is raised if it is lost, or if
+        The branch is searched from 1e-6 to 100 times 2 pi f gap.  BranchEnded is raised if it is lost, or if
         another orbit lies beyond these speeds.
         """
         return orbits_at(self, excess)
