@@ -6,6 +6,7 @@ factor.  With several touches v can turn round along the curve (``contact.orbits
 """
 
 import math
+from contextlib import suppress
 from dataclasses import replace
 from itertools import pairwise
 
@@ -18,9 +19,7 @@ from contact.orbits.branches.events import Arc, Event, event_of
 from contact.orbits.branches.family_curve import (
     GREATEST_SPEED,
     FamilyCurve,
-    at_bound,
     at_graze,
-    bound_reached,
     branch_ended,
     downhill,
     whole_branch,
@@ -92,8 +91,6 @@ def first_event(family: ContinuableFamily, start: PeriodicOrbit, lowest: float) 
         last = leg.points[-1].orbit if leg.points else last
         if last.excess < lowest:
             return None
-        if leg.ended and at_bound(last, curve):
-            raise bound_reached(last, "no event was met")
         if leg.ended and not at_graze(leg.ended, last):
             raise branch_ended(last, f"the branch ends before an event: {leg.ended}")
     return Event(kind="grazing", orbit=last)
@@ -200,9 +197,10 @@ def orbits_at(family: ContinuableFamily, excess: float) -> tuple[PeriodicOrbit, 
     curve, points, branch = whole_branch(family, None)
     found = []
     for last in (branch.orbits[0], branch.orbits[-1]):
-        slow = family.impacts == 1 and math.isclose(last.speed, curve.slowest)  # below it lies excess 0
-        if (at_bound(last, curve) and last.excess < excess) or (slow and 0.0 < excess / last.excess < 1.0):
-            raise bound_reached(last, f"an orbit at excess {excess:g} lies beyond it")
+        fast, slow = (math.isclose(last.speed, bound) for bound in (curve.fastest, curve.slowest))
+        to_graze = slow and family.impacts == 1 and 0.0 < excess / last.excess < 1.0
+        if to_graze or (fast and last.excess < excess):
+            raise branch_ended(last, f"an orbit at excess {excess:g} is beyond the speeds of the search")
     for start, end in pairwise(points):
         a, b = (point.oriented(end.x - start.x) for point in (start, end))
         turns = [Arc(curve, a, b).root(lambda point: point.rate)] if a.rate * b.rate < 0.0 else []
@@ -218,21 +216,14 @@ def fold_of_the_kicks(family: ContinuableFamily) -> SingleImpactOrbit | None:
 
 
 def _fold_near(family: ContinuableFamily, near: PeriodicOrbit | None) -> PeriodicOrbit | None:
-    """The first fold downhill from `near`, or from the fold of the kick description.
-
-    None is returned where neither leads to a fold: then the whole branch is followed, or says why not.
-    """
+    """The first fold downhill from `near`, or from the fold of the kick description; None if none is met."""
     _require(family, near)
-    try:
+    with suppress(ContactError):  # the search of the whole branch says why
         guess = near or fold_of_the_kicks(family)
-        if guess is None:
-            return None
-        for leg, _ in downhill(family, family.at_speed(guess.speed, near)):
-            for event in leg.events:
-                if event.kind == "fold":
-                    return event.point.orbit
-    except ContactError:
-        pass
+        legs = downhill(family, family.at_speed(guess.speed, near)) if guess else ()
+        return next(
+            (event.point.orbit for leg, _ in legs for event in leg.events if event.kind == "fold"), None
+        )
     return None
 
 
@@ -248,20 +239,13 @@ def fold_along_frequency(
     for frequency in require_array("frequencies", frequencies, "Hz", dimensions=1, words="drive frequencies"):
         drive = replace(family.oscillator.driven, frequency=float(frequency))
         here = family.of(replace(family.oscillator, drive=drive))
+        result: PeriodicOrbit | ContactError | None = None
         for start in dict.fromkeys((near, None)):
-            result = _fold_or_error(here, start)
-            near = result if isinstance(result, PeriodicOrbit) else None
+            try:
+                near = result = fold_of(here, start)
+            except ContactError as error:
+                near, result = None, error
             if near is not None:
                 break
         found.append(result)
     return found
-
-
-def _fold_or_error(
-    family: ContinuableFamily, near: PeriodicOrbit | None
-) -> PeriodicOrbit | ContactError | None:
-    """The result of `fold_of`, or its error."""
-    try:
-        return fold_of(family, near)
-    except ContactError as error:
-        return error

@@ -27,9 +27,7 @@ LEAST_SPEED, GREATEST_SPEED = 1e-6, 1e2
 Beyond the greatest one the gap is about a hundredth of the motion, or less.  Without a gap the amplitude is
 proportional to the speed under Newton's law, and about so under others: no fold follows."""
 
-FAR = (
-    2.0  # approach velocity, over 2 pi f gap, beyond which deviations, and so the steps, grow with the speed
-)
+FAR = 2.0  # approach velocity, over 2 pi f gap, beyond which the steps of a search grow with it
 
 PROPORTIONAL = 0.5
 """Least d log(amplitude)/d log(speed) at the greatest speed of a branch without a fold beyond it: 1 without a
@@ -46,6 +44,7 @@ class FamilyCurve(Curve):
     family: ContinuableFamily
     slowest: float
     fastest: float
+    far: float = math.inf
     admissible_only = False
 
     @property
@@ -67,8 +66,8 @@ class FamilyCurve(Curve):
         return point.orbit.excess
 
     def stretch(self, x: Array) -> float:
-        """Steps beyond `FAR` grow with the approach velocity."""
-        return max(1.0, math.exp(x[-1]) / FAR)
+        """Beyond `far` times 2 pi f gap the deviations, and so the steps, grow with the approach velocity."""
+        return max(1.0, math.exp(x[-1]) / self.far)
 
     def start(self) -> Point:
         """The point next to the orbit `like`."""
@@ -81,18 +80,6 @@ def branch_ended(orbit: PeriodicOrbit, words: str) -> BranchEnded:
     error = orbit.failure(BranchEnded, f"{words}; the last orbit has excess {orbit.excess:.6g}")
     error.orbit = orbit
     return error
-
-
-def at_bound(orbit: PeriodicOrbit, curve: FamilyCurve) -> bool:
-    """Whether an orbit is the fastest one that is searched."""
-    return math.isclose(orbit.speed, curve.fastest)
-
-
-def bound_reached(last: PeriodicOrbit, words: str) -> BranchEnded:
-    """The error of a search that reached the slowest or fastest orbit, `last`, of its range."""
-    part = last.speed / last.oscillator.unit_speed
-    bound = f"the bound of the search is reached at {last.speed:.6g} m/s, {part:.3g} times 2 pi f gap"
-    return branch_ended(last, f"{bound}: {words}")
 
 
 def downhill(family: ContinuableFamily, start: PeriodicOrbit) -> Iterator[tuple[Leg, FamilyCurve]]:
@@ -114,7 +101,7 @@ def _curve_through(orbit: PeriodicOrbit, family: ContinuableFamily) -> FamilyCur
     """The curve of a family through `orbit`, over the speeds of a search and from below to above its own."""
     low, high = (part * family.oscillator.unit_speed for part in (LEAST_SPEED, GREATEST_SPEED))
     low, high = min(low, 0.5 * orbit.speed), max(high, 2.0 * orbit.speed)
-    return FamilyCurve(like=orbit, family=family, slowest=low, fastest=high)
+    return FamilyCurve(like=orbit, family=family, slowest=low, fastest=high, far=FAR)
 
 
 def whole_branch(
@@ -124,12 +111,11 @@ def whole_branch(
 
     Raises BranchEnded if there is no orbit to start from, or if the branch is lost on the way.
     """
-    unit, why = family.oscillator.unit_speed, ""
+    unit = family.oscillator.unit_speed
     for speed in [near.speed] if near is not None else [part * unit for part in STARTS]:
         try:
             here = family.at_speed(speed, near)
-        except ContactError as error:
-            why = str(error)
+        except ContactError:
             continue
         curve = _curve_through(here, family)
         try:
@@ -139,8 +125,14 @@ def whole_branch(
         for ended, last in ((branch.ended_low, branch.orbits[0]), (branch.ended_high, branch.orbits[-1])):
             if ended not in WHOLE and not grazes(last):
                 raise branch_ended(last, f"it is lost: {ended}")
-            if at_bound(last, curve) and last.slope * last.speed < PROPORTIONAL * (1.0 + last.excess):
-                raise bound_reached(last, "the amplitude does not yet rise with the speed")
+            fast, rise = (
+                math.isclose(last.speed, curve.fastest),
+                last.slope * last.speed / (1.0 + last.excess),
+            )
+            if fast and rise < PROPORTIONAL:
+                raise branch_ended(
+                    last, "at the greatest speed of the search the amplitude does not yet rise"
+                )
         return curve, points, branch
-    words = f"no orbit of period {family.period} was found to start from: {why}"
+    words = f"no orbit of period {family.period} was found to start from"
     raise BranchEnded(time=0.0, gap=0.0, velocity=0.0, detail=words)

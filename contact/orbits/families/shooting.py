@@ -28,8 +28,5 @@ class Shooting(ContinuableFamily):
         return orbits_at(self, excess)
 
     def fold(self) -> PeriodicOrbit | None:
-        """The orbit of least amplitude at which two orbits meet; None if the branch has none.
-
-        BranchEnded is raised as in `fold_of`, but for a torus or a period doubling.
-        """
+        """The orbit of least amplitude at which two orbits meet; None if the branch has none."""
         return lowest_fold(self)[0]
