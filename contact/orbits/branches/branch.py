@@ -74,7 +74,7 @@ class Leg(NamedTuple):
 def walk(curve: Curve, first: Point, longest: float, stride: float) -> Iterator[Leg]:
     """The branch from `first` along its direction, leg by leg.
 
-    Steps of arc length grow from `stride` to `longest`.
+    Steps of arc length grow from `stride` to `longest` times the factor ``curve.stretch``.
     """
     here = looked = first  # events have been looked for up to `looked`
     edges, step, firsts = list[Point](), stride, list[Point]()
@@ -107,7 +107,7 @@ def walk(curve: Curve, first: Point, longest: float, stride: float) -> Iterator[
             yield leg._replace(ended=ended)
         if ended:
             return
-        here, step = there, min(1.5 * step, longest)
+        here, step = there, min(1.5 * step, longest * curve.stretch(there.x))
     yield Leg([], [], f"the bound of {MOST_STEPS} steps is used up")
 
 

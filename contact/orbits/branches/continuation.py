@@ -5,6 +5,8 @@ the first touch (``contact.orbits.families.continuable_family``).  Down to grazi
 factor.  With several touches v can turn round along the curve (``contact.orbits.branches.branch``).
 """
 
+import math
+from contextlib import suppress
 from dataclasses import replace
 from itertools import pairwise
 
@@ -25,9 +27,9 @@ from contact.orbits.branches.family_curve import (
 from contact.orbits.families.continuable_family import ContinuableFamily, require_orbit
 from contact.orbits.families.family import PeriodicOrbit
 from contact.orbits.families.kick import SPEEDS
+from contact.orbits.families.single_impact import SingleImpactOrbit
 
 GREATEST_STEP = 10.0  # longest step of log v: over four decades at once
-FASTEST = 100.0  # highest approach velocity, over 2 pi f gap, of an event sought; at least twice the start's
 
 LOSSES = ("torus", "period doubling", "branch point", "undecided")
 """Events other than folds and grazings at which orbits can lose their stability."""
@@ -84,7 +86,7 @@ def first_event(family: ContinuableFamily, start: PeriodicOrbit, lowest: float) 
     require_orbit(family, "start", start, member=True)
     require_within("lowest", lowest, "[1]", above=-1)
     last = start
-    for leg, curve in downhill(family, start, FASTEST):
+    for leg, curve in downhill(family, start):
         if leg.events:
             return event_of(curve, leg.events[0])
         last = leg.points[-1].orbit if leg.points else last
@@ -98,7 +100,8 @@ def first_event(family: ContinuableFamily, start: PeriodicOrbit, lowest: float) 
 def fold_of(family: ContinuableFamily, near: PeriodicOrbit | None = None) -> PeriodicOrbit | None:
     """The fold of smallest amplitude, where the family's downward scan ends.
 
-    None is returned for one reason only: the branch was followed to its graze and has no fold.
+    None is returned for one reason only: the branch has no fold.  It was followed to its graze, and up to
+    an approach velocity of 100 times 2 pi f gap, where its amplitude rises with the speed.
 
     Where contact is soft, at an excess of some 1e-5 and less, a branch can have several folds.  It can go on
     below the lowest of them until another touch grazes.  A fold below grazing is the orbit of smallest
@@ -113,10 +116,11 @@ def fold_of(family: ContinuableFamily, near: PeriodicOrbit | None = None) -> Per
         often its motion touches the stop.
     near : PeriodicOrbit, optional
         An orbit close to the fold, such as the fold at a neighbouring frequency.  The first fold downhill
-        from it is taken for the lowest.  Otherwise the kick description is searched over all speeds.
+        from it is taken for the lowest.  Otherwise it starts from the fold of the kick description.
 
-    BranchEnded is raised if there is no orbit to start from; if the branch is lost; or if it has no fold and
-    its stable orbits end by a torus or a period doubling.  The `orbit` of the error is the last one.
+    BranchEnded is raised if there is no orbit to start from; if the branch is lost; if it reaches the
+    greatest speed and its amplitude does not yet rise there; or if it has no fold and its stable orbits end
+    by a torus or a period doubling.  The `orbit` of the error is the last one.
     """
     fold, losses = lowest_fold(family, near)
     if losses:
@@ -130,10 +134,12 @@ def lowest_fold(
 ) -> tuple[PeriodicOrbit | None, list[Event]]:
     """The fold of `fold_of`, or None and the events by which stable orbits end, by falling excess."""
     fold, losses = _fold_of_these_touches(family, near)
-    kick = None if fold is None or fold.admissible else family.kicks.fold()
-    if fold is None or kick is None or kick.kick.touches == fold.impacts:
+    if fold is None or fold.admissible:
         return fold, losses
     try:
+        kick = family.kicks.fold()
+        if kick is None or kick.kick.touches == fold.impacts:
+            return fold, losses
         other = _fold_of_these_touches(family.with_impacts(kick.kick.touches), None)[0]
     except ContactError:
         return fold, []
@@ -158,10 +164,10 @@ def _fold_of_these_touches(
 
 
 def folds_of(family: ContinuableFamily, near: PeriodicOrbit | None = None) -> tuple[PeriodicOrbit, ...]:
-    """All folds of the branch, by rising approach velocity from 1e-6 to 2 times 2 pi f gap.
+    """All folds of the branch, by rising approach velocity from 1e-6 to 100 times 2 pi f gap.
 
     The branch is followed through `near`, or else through the first orbit found from the kick description;
-    BranchEnded is raised if there is none.  Between two steps a pair of folds is seen when the rate comes
+    BranchEnded is raised as in `fold_of`.  Between two steps a pair of folds is seen when the rate comes
     near zero.
     """
     _require(family, near)
@@ -183,11 +189,19 @@ def lowest_of(family: ContinuableFamily, near: PeriodicOrbit | None = None) -> E
 
 
 def orbits_at(family: ContinuableFamily, excess: float) -> tuple[PeriodicOrbit, ...]:
-    """The orbits at F/F_g - 1 = `excess` on the branch of `folds_of`, by rising approach velocity."""
+    """The orbits at F/F_g - 1 = `excess` on the branch of `folds_of`, by rising approach velocity.
+
+    BranchEnded is raised as there, and if another orbit lies beyond the bounds of the speed.
+    """
     require_within("excess", excess, "[1]", above=-1)
     _require(family)
-    curve, points, _ = whole_branch(family, None)
+    curve, points, branch = whole_branch(family, None)
     found = []
+    for last in (branch.orbits[0], branch.orbits[-1]):
+        fast, slow = (math.isclose(last.speed, bound) for bound in (curve.fastest, curve.slowest))
+        to_graze = slow and family.impacts == 1 and 0.0 < excess / last.excess < 1.0
+        if to_graze or (fast and last.excess < excess):
+            raise branch_ended(last, f"an orbit at excess {excess:g} is beyond the speeds of the search")
     for start, end in pairwise(points):
         a, b = (point.oriented(end.x - start.x) for point in (start, end))
         turns = [Arc(curve, a, b).root(lambda point: point.rate)] if a.rate * b.rate < 0.0 else []
@@ -197,35 +211,42 @@ def orbits_at(family: ContinuableFamily, excess: float) -> tuple[PeriodicOrbit, 
     return tuple(sorted(found, key=lambda orbit: orbit.speed))
 
 
+def fold_of_the_kicks(family: ContinuableFamily) -> SingleImpactOrbit | None:
+    """The fold of the kick description at any speed of the search, the usual ones first."""
+    return family.kicks.fold() or family.kicks.fold((SPEEDS[1] / 2.0, GREATEST_SPEED))
+
+
 def _fold_near(family: ContinuableFamily, near: PeriodicOrbit | None) -> PeriodicOrbit | None:
-    """The first fold downhill from `near`, or from the fold of the kick description."""
+    """The first fold downhill from `near`, or from the fold of the kick description; None if none is met."""
     _require(family, near)
-    guess = near or family.kicks.fold() or family.kicks.fold((SPEEDS[0], GREATEST_SPEED))
-    if guess is None:
-        return None
-    start = family.at_speed(guess.speed, near)
-    for leg, _ in downhill(family, start, GREATEST_SPEED):
-        for event in leg.events:
-            if event.kind == "fold":
-                return event.point.orbit
+    with suppress(ContactError):  # the search of the whole branch says why
+        guess = near or fold_of_the_kicks(family)
+        legs = downhill(family, family.at_speed(guess.speed, near)) if guess else ()
+        return next(
+            (event.point.orbit for leg, _ in legs for event in leg.events if event.kind == "fold"), None
+        )
     return None
 
 
 def fold_along_frequency(
     family: ContinuableFamily, frequencies: np.ndarray, near: PeriodicOrbit | None = None
-) -> list[PeriodicOrbit | None]:
-    """The folds at `frequencies` [Hz], each started from the one before; None where there is none."""
+) -> list[PeriodicOrbit | ContactError | None]:
+    """The results of `fold_of` at `frequencies` [Hz], each started from the fold before.
+
+    Each is the fold, None where the branch has none, or the error that says why the search failed.
+    """
     _require(family, near)
-    found: list[PeriodicOrbit | None] = []
+    found: list[PeriodicOrbit | ContactError | None] = []
     for frequency in require_array("frequencies", frequencies, "Hz", dimensions=1, words="drive frequencies"):
         drive = replace(family.oscillator.driven, frequency=float(frequency))
         here = family.of(replace(family.oscillator, drive=drive))
-        fold = None
+        result: PeriodicOrbit | ContactError | None = None
         for start in dict.fromkeys((near, None)):
             try:
-                fold = fold or fold_of(here, start)
-            except ContactError:
-                continue
-        found.append(fold)
-        near = fold
+                near = result = fold_of(here, start)
+            except ContactError as error:
+                near, result = None, error
+            if near is not None:
+                break
+        found.append(result)
     return found

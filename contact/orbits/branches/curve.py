@@ -29,8 +29,9 @@ DRIFT = 0.1  # largest change of the time between first and another touch to a n
 
 CROSSING = "orbits that repeat themselves cross the curve"
 
-SLOW, SHALLOW = 1e-3, 1e-6
-"""Approach velocity over 2 pi f gap of a touch, and depth over the gap of a peak, at a graze."""
+SLOW, SHALLOW, SPLIT = 1e-3, 1e-6, 1e-5
+"""At a graze: approach velocity over 2 pi f gap of a touch, depth over the gap of a peak, and rebound over
+approach velocity of a touch that splits in two."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -61,6 +62,10 @@ class Curve(ABC):
     @abstractmethod
     def parameter(self, point: Point) -> float:
         """The parameter at a point."""
+
+    def stretch(self, x: Array) -> float:
+        """Factor of the longest step at `x`, where the unknowns are large."""
+        return 1.0
 
     def solve(self, x: Array, normal: Array, touches: int) -> Point:
         """The point of the curve next to `x`, in the plane through it across `normal`."""
@@ -134,7 +139,12 @@ def why_no_neighbours(a: Point, b: Point) -> str:
 
 
 def grazes(orbit: PeriodicOrbit) -> bool:
-    """Whether a touch is about to be lost, or a peak between touches about to become one."""
-    if orbit.approach.min() < SLOW * orbit.oscillator.unit_speed:
+    """Whether a touch is about to be lost or to split, or a peak between touches about to become one.
+
+    A touch splits where the tip leaves the stop with no velocity; only a plastic one leaves it so everywhere.
+    """
+    rebound = np.abs(orbit.record[:, 3])
+    splits = np.any((rebound > 0.0) & (rebound < SPLIT * orbit.approach))
+    if splits or orbit.approach.min() < SLOW * orbit.oscillator.unit_speed:
         return True
     return any(abs(height) < SHALLOW * orbit.oscillator.stop.gap for _, _, height in peaks(orbit))

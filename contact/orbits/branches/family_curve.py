@@ -19,12 +19,19 @@ from contact.orbits.families.family import PeriodicOrbit
 FIRST_STRIDE, LONGEST_STRIDE = 0.02, 0.3
 """Steps on the way to an event: the first, as it may be close, and the longest."""
 
-STARTS = (0.1, 0.03, 0.3, 0.01)
+STARTS = (0.1, 0.03, 0.3, 0.01, 1.0, 10.0)
 """Approach velocities, over 2 pi f gap, at which a branch is entered where kicks show no fold."""
 
-LEAST_SPEED, GREATEST_SPEED = 1e-6, 2.0
-"""Approach velocities, over 2 pi f gap, between which a fold is looked for.  Slower touches are grazes.
-Touches faster than 2 pi f gap belong to amplitudes far beyond the letter's."""
+LEAST_SPEED, GREATEST_SPEED = 1e-6, 1e2
+"""Approach velocities, over 2 pi f gap, between which a branch is searched.  Slower touches are grazes.
+Beyond the greatest one the gap is about a hundredth of the motion, or less.  Without a gap the amplitude is
+proportional to the speed under Newton's law, and about so under others: no fold follows."""
+
+FAR = 2.0  # approach velocity, over 2 pi f gap, beyond which the steps of a search grow with it
+
+PROPORTIONAL = 0.5
+"""Least d log(amplitude)/d log(speed) at the greatest speed of a branch without a fold beyond it: 1 without a
+gap, negative before a fold."""
 
 WHOLE = ("range", "closed", SHORTER)
 """Ends of a branch that was followed as far as it goes; a branch that ends by a graze was, too."""
@@ -37,6 +44,7 @@ class FamilyCurve(Curve):
     family: ContinuableFamily
     slowest: float
     fastest: float
+    far: float = math.inf
     admissible_only = False
 
     @property
@@ -57,6 +65,10 @@ class FamilyCurve(Curve):
         """The excess [1]."""
         return point.orbit.excess
 
+    def stretch(self, x: Array) -> float:
+        """Beyond `far` times 2 pi f gap the deviations, and so the steps, grow with the approach velocity."""
+        return max(1.0, math.exp(x[-1]) / self.far)
+
     def start(self) -> Point:
         """The point next to the orbit `like`."""
         x = self.family.unknowns(self.like.deviations, self.like.speed)
@@ -70,12 +82,9 @@ def branch_ended(orbit: PeriodicOrbit, words: str) -> BranchEnded:
     return error
 
 
-def downhill(
-    family: ContinuableFamily, start: PeriodicOrbit, fastest: float
-) -> Iterator[tuple[Leg, FamilyCurve]]:
+def downhill(family: ContinuableFamily, start: PeriodicOrbit) -> Iterator[tuple[Leg, FamilyCurve]]:
     """The legs of the branch from `start` towards lower amplitudes."""
-    unit = family.oscillator.unit_speed
-    curve = _curve_through(start, family, LEAST_SPEED * unit, fastest * unit)
+    curve = _curve_through(start, family)
     first = curve.start()
     first = first if first.rate <= 0.0 else first.oriented(-first.direction)
     for leg in walk(curve, first, LONGEST_STRIDE, FIRST_STRIDE):
@@ -88,10 +97,11 @@ def at_graze(ended: str, last: PeriodicOrbit) -> bool:
     return slow or (ended not in ("range", "closed") and grazes(last))
 
 
-def _curve_through(orbit: PeriodicOrbit, family: ContinuableFamily, low: float, high: float) -> FamilyCurve:
-    """The curve of a family through `orbit`, over approach velocities [m/s] from below to above its own."""
+def _curve_through(orbit: PeriodicOrbit, family: ContinuableFamily) -> FamilyCurve:
+    """The curve of a family through `orbit`, over the speeds of a search and from below to above its own."""
+    low, high = (part * family.oscillator.unit_speed for part in (LEAST_SPEED, GREATEST_SPEED))
     low, high = min(low, 0.5 * orbit.speed), max(high, 2.0 * orbit.speed)
-    return FamilyCurve(like=orbit, family=family, slowest=low, fastest=high)
+    return FamilyCurve(like=orbit, family=family, slowest=low, fastest=high, far=FAR)
 
 
 def whole_branch(
@@ -107,11 +117,22 @@ def whole_branch(
             here = family.at_speed(speed, near)
         except ContactError:
             continue
-        curve = _curve_through(here, family, LEAST_SPEED * unit, GREATEST_SPEED * unit)
-        branch, points = branch_of(curve, curve.start(), LONGEST_STRIDE, LONGEST_STRIDE)
+        curve = _curve_through(here, family)
+        try:
+            branch, points = branch_of(curve, curve.start(), LONGEST_STRIDE, LONGEST_STRIDE)
+        except ContactError as error:
+            raise branch_ended(here, f"it cannot be followed: {error}") from error
         for ended, last in ((branch.ended_low, branch.orbits[0]), (branch.ended_high, branch.orbits[-1])):
             if ended not in WHOLE and not grazes(last):
                 raise branch_ended(last, f"it is lost: {ended}")
+            fast, rise = (
+                math.isclose(last.speed, curve.fastest),
+                last.slope * last.speed / (1.0 + last.excess),
+            )
+            if fast and rise < PROPORTIONAL:
+                raise branch_ended(
+                    last, "at the greatest speed of the search the amplitude does not yet rise"
+                )
         return curve, points, branch
     words = f"no orbit of period {family.period} was found to start from"
     raise BranchEnded(time=0.0, gap=0.0, velocity=0.0, detail=words)

@@ -20,7 +20,11 @@ class Shooting(ContinuableFamily):
     """
 
     def orbits(self, excess: float) -> tuple[PeriodicOrbit, ...]:
-        """The orbits at F/F_g - 1 = `excess` > -1, by rising approach speed, on the whole branch."""
+        """The orbits at F/F_g - 1 = `excess` > -1, by rising approach speed, on the whole branch.
+
+        The branch is searched from 1e-6 to 100 times 2 pi f gap.  BranchEnded is raised if it is lost, or if
+        another orbit lies beyond these speeds.
+        """
         return orbits_at(self, excess)
 
     def fold(self) -> PeriodicOrbit | None:

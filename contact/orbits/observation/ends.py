@@ -19,15 +19,14 @@ from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
 from beam.parameters import require_kind, require_whole, require_within
-from contact.errors import ContactError
+from contact.errors import BranchEnded, ContactError
 from contact.laws import NEWTON
 from contact.maps.nordmark import NordmarkMap
 from contact.maps.nordmark_orbits import MapFamily
 from contact.maps.protocol import require_map
 from contact.maps.stroboscope import StrobedMap, StroboscopicMap
-from contact.orbits.branches.continuation import first_event
+from contact.orbits.branches.continuation import first_event, fold_of_the_kicks
 from contact.orbits.families.family import Family, PeriodicOrbit
-from contact.orbits.families.kick import KickFamily
 from contact.orbits.families.shooting import Shooting
 from contact.orbits.families.single_impact import MaximalFamily
 from contact.orbits.observation.settling import Settled, orbit_near, settle
@@ -79,7 +78,7 @@ def orbit_end(
 ) -> OrbitEnd[S] | None:
     """Follow the orbit on which `state` settles at `excess` [1] downwards until it ends.
 
-    None is returned if the motion at `excess` is not periodic with impacts, or never ends above `lowest`.
+    None is returned if the motion at `excess` is not periodic with impacts, or still holds at `lowest`.
 
     Parameters
     ----------
@@ -88,7 +87,9 @@ def orbit_end(
     relative, absolute : float
         Width of the last step: `relative` times the excess or `absolute`, whichever is larger.
     first_step, lowest : float
-        First step of the excess, and excess below which the search is given up.
+        First step of the excess, and last excess that is tried.
+
+    BranchEnded is raised if the bound of steps is used up.
     """
     require_map(strobed)
     require_within("relative", relative, "[1]", low=0)
@@ -113,8 +114,8 @@ def orbit_end(
         final = max(relative * abs(held), absolute)
         # from next to where a longer step fell off (`lost`, if below), the last step is made anew
         step = max(0.5 * (held - lost) if lost < held else step, final)
-        trial = held - step
-        if trial < lowest:
+        trial = max(held - step, lowest)
+        if held <= lowest:
             return None
         now = kept(trial)
         if now is None and step <= final:
@@ -134,7 +135,8 @@ def orbit_end(
             lost = trial
         else:
             held, state, step = trial, now, 2.0 * step
-    return None
+    words = f"the bound of {MOST_STEPS} steps is used up at excess {held:.6g}"
+    raise BranchEnded(time=0.0, gap=0.0, velocity=0.0, detail=words)
 
 
 End = tuple[str, float, PeriodicOrbit | None]  # kind of an end, its excess, and its orbit if that is known
@@ -192,7 +194,7 @@ def fold_excess(strobed: StrobedMap[Any], period: int) -> float | None:
     period : int
         m, in drive periods; 0 for a motion that did not settle.
 
-    NotPeriodic is raised if the orbits around the expected place of the fold are not found.
+    BranchEnded is raised if the orbits around the expected place of the fold are not found.
     """
     if require_whole("period", period, "drive periods", low=0) < 2:
         return None
@@ -205,9 +207,10 @@ def fold_excess(strobed: StrobedMap[Any], period: int) -> float | None:
         if oscillator.stop.law.code == NEWTON:
             family = MaximalFamily.from_oscillator(oscillator, period=period)
         else:
-            kick = KickFamily(oscillator=oscillator, period=period).fold()
+            one = Shooting(oscillator=oscillator, period=period)
+            kick = fold_of_the_kicks(one)
             if kick is None:
                 return None
-            family = Shooting(oscillator=oscillator, period=period, impacts=kick.kick.touches)
+            family = one.with_impacts(kick.kick.touches)
     at_fold = family.fold()
     return None if at_fold is None else at_fold.excess

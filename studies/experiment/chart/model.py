@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 
 from beam import InvalidValue
 from contact import Band, ImpactOscillator, MaximalFamily
-from contact.orbits import AmplitudeScan, Shooting, fold_along_frequency
+from contact.orbits import AmplitudeScan, PeriodicOrbit, Shooting, fold_along_frequency
 from studies.shell.options import require_cells
 from studies.shell.scene import Scene, band_of
 from studies.shell.sweep import Column
@@ -152,6 +152,6 @@ def folds_of_beam(
         family = Shooting(oscillator=_driven(oscillator, float(inside[middle])), period=band.period)
         for way in (inside[middle::-1], inside[middle + 1 :]):
             for frequency, fold in zip(way.tolist(), fold_along_frequency(family, way), strict=True):
-                if fold is not None and fold.admissible and fold.excess > lowest:
+                if isinstance(fold, PeriodicOrbit) and fold.admissible and fold.excess > lowest:
                     found.append(Fold(period=band.period, frequency_hz=frequency, excess=fold.excess))
     return sorted(found, key=lambda one: (one.period, one.frequency_hz))

@@ -120,7 +120,8 @@ def folds_at(
     slope = float(whole.kick.jump[0, 1]) / whole.kick.speed
 
     shooting = Shooting(oscillator=oscillator, period=m, impacts=whole.kick.touches)
-    orbit = fold_along_frequency(shooting, np.array([frequency]), near)[0]
+    fold = fold_along_frequency(shooting, np.array([frequency]), near)[0]
+    orbit = fold if isinstance(fold, PeriodicOrbit) else None
     row = replace(
         row,
         map_measured_kick=map_fold(nordmark, m, -float(model.phi[0]) * slope),
