@@ -20,7 +20,7 @@ from contact import (
 )
 from contact.integrators import CentralDifference, Exact, GeneralisedAlpha, Splitting
 
-LOAD, REFUSED = np.array([70.0, -150.0]), "load (is|must be)"
+LOAD, REFUSED = np.array([70.0, -150.0]), "load (is|drives)"
 CHANGE = orbits.Change(gap=1.0)
 METHODS = [Exact(), *(kind(step=1e-5) for kind in (CentralDifference, GeneralisedAlpha, Splitting))]
 
@@ -47,9 +47,10 @@ CALLS = {
     "orbit": lambda o, rest: strobed(o).orbit(thrown(rest), 20).end.displacement - rest,
     "factors": lambda o, rest: strobed(o).orbit(thrown(rest), 2, factors=[1.2, 0.9]).end.displacement - rest,
     "jacobians": lambda o, rest: strobed(o).jacobians(thrown(rest), 3)[0][-1][0],
-    "settle": lambda o, rest: orbits.settle(strobed(o), thrown(rest), most_cycles=64).end.displacement - rest,
-    "scan": lambda o, rest: orbits.AmplitudeScan(oscillator=o, most_cycles=128)(20.0, [-0.1, 0.1]).impacts,
-    "cloud": lambda o, rest: orbits.cloud(strobed(o, -0.1), strobed(o, -0.1).steady(), 2, deviation=1e-3),
+    "settle": lambda o, rest: (
+        orbits.settle(strobed(o, -0.1), strobed(o, -0.1).steady(), most_cycles=64).end.displacement - rest
+    ),
+    "scan": lambda o, rest: orbits.AmplitudeScan(oscillator=o, most_cycles=128)(20.0, [-0.2, -0.1]).period,
 }
 FOLLOWED = {
     **{m.name: lambda o, rest, m=m: simulate(o, thrown(rest), periods=2, method=m).end.displacement - rest
@@ -58,6 +59,7 @@ FOLLOWED = {
     "no changes": lambda o, rest: orbits.motion_derivatives(o, thrown(rest), [], periods=2).strobes,
 }  # fmt: skip
 WITHOUT = {
+    "cloud": lambda o, rest: orbits.cloud(strobed(o, -0.1), strobed(o, -0.1).steady(), 2, deviation=1e-3),
     "kick": lambda o, rest: orbits.KickFamily(oscillator=o, period=1),
     "shooting": lambda o, rest: orbits.Shooting(oscillator=o, period=1),
     "changes": lambda o, rest: orbits.motion_derivatives(
@@ -84,7 +86,7 @@ def test_a_load_moves_the_rest_position_or_is_refused(name):
         np.testing.assert_allclose(call(stiff, rest), right, rtol=1e-8, atol=1e-12)
     if name not in FOLLOWED:
         with pytest.raises(ValueError, match=REFUSED):
-            call(loaded([154.0, 0.0]), still)
+            call(loaded([0.0, 0.0]), still)
 
 
 def test_a_load_moves_a_free_body_that_touches_the_stop_at_rest():
