@@ -34,7 +34,7 @@ import numpy as np
 
 from beam.parameters import InvalidValue, require, require_kind, require_whole
 from contact.flight.modal_flow import flow_over, propagate, steady_motion, tip_rounding
-from contact.flight.motion import INVERSE_OMEGA, Motion, with_only_mode
+from contact.flight.motion import INVERSE_OMEGA, LOAD, Motion, with_only_mode
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.trajectory import ImpactKind, Impacts, State, Trajectory
@@ -127,6 +127,10 @@ def collisions(
     run = require_kind("trajectory", given, Trajectory, "a Trajectory, from simulate")
     motion, impacts, k = run.oscillator.motion(), run.impacts, run.oscillator.model.leading_mode
     single = with_only_mode(motion, k)
+    words = (
+        "load drives a higher mode of zero frequency; it must be zero there for a virtual motion of mode 1"
+    )
+    require(not np.delete(motion.row(LOAD), k).any(), words)
     if trajectory is not None:
         other = require_kind("oscillator", oscillator, ImpactOscillator, "an ImpactOscillator")
         pairs: Any = zip(motion, other.motion(), strict=True)
@@ -250,6 +254,7 @@ def before_collision(oscillator: ImpactOscillator) -> State:
     """The steady motion of a driven `oscillator`, where the tip is lowest in the first drive period."""
     require_kind("oscillator", oscillator, ImpactOscillator, "an ImpactOscillator")
     require(oscillator.drive is not None, "drive is None; there is no steady motion then, so give a state")
+    _ = oscillator.mean_height  # refuses a load under which there is none
     motion = oscillator.motion()
     lowest = math.atan2(-motion.tip_sine, -motion.tip_cosine) % (2 * math.pi) / motion.drive
     q, q_rate = steady_motion(motion, lowest)

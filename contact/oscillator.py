@@ -8,7 +8,8 @@ contact force [N] and g_k an optional constant modal load [N kg^-0.5].  With one
 ``NewtonRestitution`` this is Eq. (1) of the letter (1996), whose F is Z (2 pi f)^2.
 
 Steady response without contact: q_k = Z Im(H_k exp(i 2 pi f t)), H_k = Gamma_k w^2 / (omega_k^2 - w^2 + i c_k
-w), so that the tip just touches the stop at the grazing amplitude Z_g = gap / |sum_k phi_k H_k|.
+w), about the static displacement g_k/omega_k^2.  The tip just touches the stop at the grazing amplitude Z_g =
+(gap - sum_k phi_k g_k/omega_k^2) / |sum_k phi_k H_k|.
 """
 
 from __future__ import annotations
@@ -172,7 +173,8 @@ class ImpactOscillator:
             raise InvalidValue(f"values is {shown(values)}; it must be {valid}") from None
 
     def steady_response(self) -> np.ndarray:
-        """H_k, complex, shape (n_modes,) [kg^0.5]: without contact q_k(t) = Z Im(H_k exp(i 2 pi f t))."""
+        """H_k, complex, shape (n_modes,) [kg^0.5]: without contact q_k(t) = g_k/omega_k^2 + Z Im(H_k exp(i 2
+        pi f t))."""
         if self.drive is None:
             return np.zeros(self.n_modes, dtype=complex)
         w, model = self.drive.angular_frequency, self.model
@@ -186,18 +188,30 @@ class ImpactOscillator:
     def _tip_response(self) -> complex:
         return complex(self.tip(self.steady_response()))
 
+    @cached_property
+    def mean_height(self) -> float:
+        """Static tip displacement minus gap, about which the steady motion oscillates [m]; ValueError if
+        there is no steady motion."""
+        _ = self.driven
+        if self.load is not None:
+            words = (
+                "for a steady motion it must be zero on every mode of zero frequency, which drifts under it"
+            )
+            drifts = np.any(self.load[self.model.omega == 0.0])
+            require(not drifts, f"load is {shown(self.load.tolist())} N kg^-0.5; {words}")
+        return self._at_one_metre.level
+
     def drive_at(self, reach: float, rate: float) -> tuple[float, float]:
         """Base amplitude [m] and drive time [s] at which the steady tip motion has displacement `reach` [m]
         and velocity `rate` [m/s]."""
         w = self.driven.angular_frequency
-        # x = Z Im(H e^{i w t}), x' = Z w Re(H e^{i w t}), so Z e^{i w t} = C + i S with
-        phasor = (rate / w + 1j * reach) / self.tip_response()
+        # x = x_0 + Z Im(H e^{i w t}), x' = Z w Re(H e^{i w t}), so Z e^{i w t} = C + i S with
+        phasor = (rate / w + 1j * (reach - (self.mean_height + self.stop.gap))) / self.tip_response()
         return abs(phasor), float(np.angle(phasor) % (2.0 * np.pi)) / w
 
     def grazing_amplitude(self) -> float:
         """Base amplitude Z_g at which the steady tip motion just touches the stop [m]."""
-        _ = self.driven
-        level, gap = self.motion().level, self.stop.gap
+        level, gap = self.mean_height, self.stop.gap
         require(level < 0.0, f"gap is {gap} m; the static displacement {level + gap:g} m must stay below it")
         response = abs(self.tip_response())
         words = "the drive does not move the tip; at least one mode must have both other than zero"

@@ -145,7 +145,8 @@ class Impacts:
     approach, rebound : ndarray, shape (n_impacts,)
         Tip velocity at both, positive towards the wall [m/s]; an approach before the run is NaN.
     loss, kind : ndarray, shape (n_impacts,)
-        Energy lost in the contact itself [J], and values of `ImpactKind`.
+        Energy lost in the contact itself [J], NaN for a force contact that had not ended, and values of
+        `ImpactKind`.  The loss of a stay is the energy of the hops that it begins with.
     deviations_start, deviations_end : ndarray, shape (n_impacts, 2, n_modes)
         Deviations (u, v) just before the touch and just after the release.
     """

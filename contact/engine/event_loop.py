@@ -91,13 +91,11 @@ def new_workspace(motion, search):
 
 
 @kernel
-def sample_flight(motion, run, until, held_down, space, recorder):
-    """Write states at the sample times of a flight up to `until` [s]; hops `held_down` stay on the wall."""
+def sample_flight(motion, run, until, space, recorder):
+    """Write states at the sample times of a flight up to `until` [s]."""
     while sample_due(recorder, run.period, until):
         time = recorder.sample_clock[recorder.marks[0].sampled] - run.clock
         propagate_flight(motion, space.flight, time, space.u, space.v)
-        if held_down:
-            hold(motion, run.clock + time, space.u, space.v)
         put_sample(recorder, space.u, space.v)
 
 
@@ -133,7 +131,7 @@ def follow_flights(motion, u, v, run, last, clock_end, space, recorder):
             run.steps += 1
             until = end if outcome == FREE else base + s
             if marks.sampled < samples and outcome != UNRESOLVED:
-                sample_flight(motion, run, until, False, space, recorder)
+                sample_flight(motion, run, until, space, recorder)
             if outcome == FREE and base == 0.0 and not at_last:
                 apply_flow(whole, u, v)
             else:
@@ -155,7 +153,7 @@ def follow_flights(motion, u, v, run, last, clock_end, space, recorder):
 
 
 @part
-def handle_crossing(motion, u, v, run, crosses, end, space, recorder):
+def handle_crossing(motion, u, v, run, crosses, recorder):
     """Let the law act where a flight meets the stop; without `crosses` the touch is a graze."""
     approach = tip_state(motion, run.clock, u, v)[1]
     if crosses:
@@ -165,15 +163,9 @@ def handle_crossing(motion, u, v, run, crosses, end, space, recorder):
         if run.regime == OUTSIDE or run.regime == SUSTAINED:
             close_touch(recorder, run.period, run.clock, rebound, u, v)
         if run.regime == SUSTAINED:
-            # the remaining hops take a time run.wait; a part of them after the strobe is below rounding
+            # the hops that are left are a stay, and their energy is its loss
             open_touch(recorder, run.period, run.clock, rebound, STAY, u, v)
-            rest = min(run.wait, end - run.clock)
-            run.wait = 0.0
-            if rest > 0.0:
-                load_state(space.flight, u, v)
-                sample_flight(motion, run, run.clock + rest, True, space, recorder)
-                propagate_flight(motion, space.flight, rest, u, v)
-                run.clock += rest
+            add_loss(recorder, 0.5 * rebound * rebound / motion.inverse_mass)
             hold(motion, run.clock, u, v)
     else:
         open_touch(recorder, run.period, run.clock, 0.0, GRAZE, u, v)
@@ -253,8 +245,7 @@ def advance(motion, u, v, runs, last, clock_end, recorder):
         else:
             status = follow_contact(motion, u, v, run, last, clock_end, space, recorder)
         if status == CROSSED or status == GRAZED:
-            end = clock_end if run.period == last else motion.period
-            handle_crossing(motion, u, v, run, status == CROSSED, end, space, recorder)
+            handle_crossing(motion, u, v, run, status == CROSSED, recorder)
         elif status == RELEASED:
             touch.leave(motion, run, u, v)
             velocity = tip_state(motion, run.clock, u, v)[1]

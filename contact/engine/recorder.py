@@ -15,7 +15,7 @@ from contact.errors import ContactError
 from contact.flight.modal_flow import steady_motion
 from contact.machine.compiled import inlined, kernel, part
 from contact.oscillator import ImpactOscillator
-from contact.trajectory import IMPACT, Impacts, Run, State, Trajectory, steady_states
+from contact.trajectory import IMPACT, STAY, Impacts, Run, State, Trajectory, steady_states
 
 MARKS = np.dtype([(name, "i8") for name in ("logged", "sampled", "strobed", "impacts", "touching")])
 """Rows in use of log, samples and strobes; impacts since the last strobe; whether the tip touches."""
@@ -208,7 +208,7 @@ def trajectory_of(
         end_clock=(log["end_period"] - number) * period + log["end"],
         approach=log["approach"].copy(),
         rebound=log["rebound"].copy(),
-        loss=np.where(np.isnan(log["end"]), np.nan, log["loss"]),
+        loss=np.where(np.isnan(log["end"]) & (log["kind"] != STAY), np.nan, log["loss"]),
         kind=log["kind"].copy(),
         deviations_start=touches[:, 0],
         deviations_end=touches[:, 1],

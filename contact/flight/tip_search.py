@@ -10,8 +10,18 @@ import math
 import numpy as np
 
 from contact.flight.elementary import EPS
-from contact.flight.modal_flow import U, V, flow, load_state, new_flight, tip_bound, tip_rounding, tip_state
-from contact.flight.motion import DECAY, LOAD, SQUARE
+from contact.flight.modal_flow import (
+    U,
+    V,
+    flow,
+    load_state,
+    mode_acceleration,
+    new_flight,
+    tip_bound,
+    tip_rounding,
+    tip_state,
+)
+from contact.flight.motion import DECAY, SQUARE
 from contact.machine.compiled import kernel
 
 SHORTEST = 1e-9
@@ -95,6 +105,17 @@ def find_peak(motion, flight, base, point, bracket, m3, margin):
 
 
 @kernel
+def jerk_bound(motion, u, v):
+    """Bound of the third derivative of the tip displacement in a flight from (u, v) [m/s^3]."""
+    total, modes = motion.amplitude * motion.drive**3, motion.modes
+    for k in range(motion.size):
+        a = mode_acceleration(motion, k, u[k], v[k])
+        jerk = -modes[DECAY, k] * a - modes[SQUARE, k] * v[k]
+        total += tip_bound(motion, k, jerk, math.sqrt(modes[SQUARE, k]) * a)
+    return total
+
+
+@kernel
 def peaks_of_flight(motion, base, u, v, span, rising):
     """All peaks of the tip in a `span` of times of the flight from (u, v) [s], shape (n,).
 
@@ -102,7 +123,7 @@ def peaks_of_flight(motion, base, u, v, span, rising):
     (r + |y''|)/M where y'' leads away from zero, and y'' keeps its sign for |y''|/M.  None of these stretches
     holds two peaks.  Set `rising` if the tip may rise at the start; a tip that leaves the stop does not.
     """
-    flight, modes, steady = new_flight(motion), motion.modes, motion.amplitude * motion.drive**3
+    flight = new_flight(motion)
     load_state(flight, u, v)
     margin = EPS * tip_rounding(motion, u, v)  # so that the time is as exact as the height
     (s, end), found, before, m3 = span, [0.0], 0.0, 0.0
@@ -114,12 +135,8 @@ def peaks_of_flight(motion, base, u, v, span, rising):
             flow(motion, flight, 0, flight.shape[1], s)
         if not s < end:
             return np.array(found[1:])
-        before, point, m3 = y1 if rising else 0.0, (s, y0, y1, y2), steady
+        before, point, m3 = y1 if rising else 0.0, (s, y0, y1, y2), jerk_bound(motion, flight[U], flight[V])
         rising = True
-        for k in range(motion.size):
-            a = modes[LOAD, k] - modes[DECAY, k] * flight[V, k] - modes[SQUARE, k] * flight[U, k]
-            jerk = -modes[DECAY, k] * a - modes[SQUARE, k] * flight[V, k]
-            m3 += tip_bound(motion, k, jerk, math.sqrt(modes[SQUARE, k]) * a)
         root, bend = math.sqrt(y2 * y2 + 2.0 * m3 * abs(y1)), abs(y2)
         sure = root + bend if y1 * y2 > 0.0 else max(bend, root - bend)
         s = min(s + max(sure / m3, least), end) if m3 > 0.0 else end

@@ -54,6 +54,7 @@ class StroboscopicMap:
 
     def steady(self) -> State:
         """The state of the steady motion at a strobe; below grazing it is the p1 orbit without impacts."""
+        _ = self.oscillator.mean_height  # there is a steady motion
         mean, n = self._system.mean, self.oscillator.n_modes
         return State(displacement=mean[:n], velocity=mean[n:])
 

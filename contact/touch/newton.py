@@ -5,10 +5,20 @@ The impulse of the stop acts on the tip alone, so that the modal velocities jump
     v_k -> v_k - phi_k (1 + e) x' / sum_j phi_j^2,
 
 which sends the tip velocity x' to -e x' (``NewtonRestitution``).  Let an impact leave the tip with velocity
--w while it is accelerated towards the wall with a > 0.  The next flights last 2w/a, 2ew/a, ..., and their sum
-2w/(a(1 - e)) is finite.  Once the height of a hop is lost in rounding, the rest of the sequence is taken in
-one step.  Then the tip stays on the wall (regime SUSTAINED), held by the force that makes d'' = 0, until that
-force would pull; the series is that of ``contact.touch.time_series``.
+-w while it is accelerated towards the wall with a > 0.  It hops to the height h = w^2/(2a).  The next flights
+last 2w/a, 2ew/a, ..., and their sum W = 2w/(a(1 - e)) is finite.  If a changes, a speed v is multiplied by
+(a/a_0)^(1/3) too (v^3/a is the adiabatic invariant of elastic hops), and the hops end at the T with
+
+    integral from 0 to T of (a/a_0)^(2/3) dt = W.
+
+In a free flight |a - a_0| <= J T, J the bound of the jerk; the push of the wall on the modes adds to a.  With
+J W << a, T is close to W: the hops end before the pull does.  Hops so low that rounding decides over them
+then change into a stay at once.  The mean force of hops is the force that holds the tip, so that the modes
+differ from their motion under the hops by h.  The impulse that takes the speed w off takes the energy
+w^2/(2 sum phi^2), which the hops would lose together.
+
+In a stay (regime SUSTAINED) the tip is held by the force that makes d'' = 0, until that force would pull; the
+series is that of ``contact.touch.time_series``.
 """
 
 import math
@@ -23,6 +33,7 @@ from contact.flight.modal_flow import (
     tip_sum,
 )
 from contact.flight.polynomial_root import first_polynomial_root
+from contact.flight.tip_search import jerk_bound
 from contact.flight.variation import NUMBER0, all_tip_changes
 from contact.machine.compiled import kernel, part
 from contact.touch import time_series
@@ -33,10 +44,14 @@ LAW, METHOD = "NewtonRestitution", "event-driven"
 REGIMES = (OUTSIDE, SUSTAINED)
 
 LOWEST_HOP = 200.0
-"""Height of a hop, in rounding bounds of the tip displacement, below which hops are summed instead of
-computed: two digits of the height are then still good.  A hop loses 2(1 - e) of its height, and rounding may
-move its end by as much as its bound.  Where e is so close to one that the loss is smaller than the bound,
-hops need not get lower and may repeat for good."""
+"""Height of a hop, in rounding bounds of the tip displacement, below which hops that end are a stay: two
+digits of the height are then still good.  A hop loses 2(1 - e) of its height, and rounding may move its end
+by as much as its bound.  Where the loss is smaller than the bound, hops need not get lower, and are a stay if
+they end in this period of the drive.  A hop below the bound itself is a stay even if it never ends."""
+
+STEADY_PULL = 0.1
+"""Part of itself by which the acceleration of the tip may change until the hops end: W is then right to 4 %,
+and the hops do end."""
 
 series_size, series_variable = time_series.series_size, time_series.series_variable
 
@@ -68,30 +83,31 @@ def newton_impact(motion, v, approach, restitution):
 
 
 @part
-def accumulation_time(rebound, acceleration, restitution, rounding):
-    """Time until accumulating impacts have come to rest [s], or -1 if the hop is still worth computing.
+def hops_end(motion, run, u, v, rebound, rounding):
+    """Whether the tip stays on the wall, as its hops are low and end: see `LOWEST_HOP`.
 
-    `rebound` is the speed with which the tip leaves [m/s], `acceleration` its acceleration towards the wall
-    [m/s^2] and `rounding` the rounding bound of the tip displacement [m].
+    `rebound` is the speed with which the tip leaves [m/s] and `rounding` the rounding bound of the tip
+    displacement [m].
     """
-    if acceleration <= 0.0 or restitution >= 1.0:
-        return -1.0
-    lowest = max(LOWEST_HOP, 1.0 / (1.0 - restitution)) * rounding
-    if rebound * rebound > 2.0 * acceleration * lowest:
-        return -1.0
-    return 2.0 * rebound / (acceleration * (1.0 - restitution))
+    acceleration, lost = tip_state(motion, run.clock, u, v)[2], 1.0 - motion.number0
+    lowest, energy = rounding * acceleration, 0.5 * rebound * rebound
+    if acceleration <= 0.0 or energy * lost > max(LOWEST_HOP * lost, 1.0) * lowest:
+        return False
+    if energy <= lowest:
+        return True
+    left = motion.period if energy <= LOWEST_HOP * lowest else motion.period - run.clock
+    pull = acceleration * lost  # W = 2 rebound/pull
+    change = 2.0 * rebound * jerk_bound(motion, u, v)
+    return 2.0 * rebound <= left * pull and change <= STEADY_PULL * acceleration * pull
 
 
 @kernel
 def strike(motion, run, u, v, approach):
-    """The impact; in the regime SUSTAINED the tip comes to rest after a time run.wait."""
+    """The impact; in the regime SUSTAINED the hops that follow it are a stay."""
     e, rounding = motion.number0, tip_rounding(motion, u, v)
     newton_impact(motion, v, approach, e)
     loss = 0.5 * (1.0 - e * e) * approach * approach / motion.inverse_mass
-    acceleration = tip_state(motion, run.clock, u, v)[2]
-    rest = accumulation_time(e * approach, acceleration, e, rounding)
-    if rest >= 0.0:
-        run.wait = rest
+    if hops_end(motion, run, u, v, e * approach, rounding):
         return SUSTAINED, -e * approach, loss
     run.contact_order = 1 if e * approach > 0.0 else 2
     return OUTSIDE, -e * approach, loss

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from oscillators import OMEGA, PHI, heights, newton, spring
+from oscillators import OMEGA, PHI, heights, modes_on_stop, newton, spring
 from whole_motions import FREE, HELD, IMPACT, STAY, accelerations, falling_body, integrate, pressed
 
 from contact import Chatter, State, simulate
@@ -73,6 +73,23 @@ def test_more_hops_than_are_counted_are_refused_as_chatter():
         else:
             run = simulate(ball, start, duration=0.9)
             assert run.end.regime == HELD and 0.9e5 < len(run.impacts) < 1e5
+
+
+@pytest.mark.parametrize("left", [2.0**-53, 1e-14, 1e-12, 1e-10, 1e-6, 1e-3, 0.1, 1.0])
+@pytest.mark.parametrize("drop", [5e-3, 1e-5])
+def test_impacts_next_to_elastic_lose_their_part_and_no_more(left, drop):
+    """An undamped spring that a load presses on the stop: speeds fall as e^n, and the log has all energy."""
+    omega, rest = 154.0, 0.02
+    ball = modes_on_stop(omega, law=newton(1.0 - left), gap=0.01, load=rest * omega**2)
+    start = State(displacement=np.array([0.01 - drop]), velocity=np.zeros(1))
+    run = simulate(ball, start, duration=0.3)
+    assert (run.end.regime == HELD) == (left >= 0.1)
+    hits = run.impacts.approach[run.impacts.kind == IMPACT]
+    speeds = omega * math.sqrt(drop * (2 * (rest - 0.01) + drop)) * (1.0 - left) ** np.arange(hits.size)
+    known = speeds > 0.1 * speeds[0]
+    np.testing.assert_allclose(hits[known], speeds[known], rtol=1e-14 / drop)
+    before, after = (ball.energy(state.displacement - rest, state.velocity) for state in (start, run.end))
+    assert before - after == pytest.approx(run.impacts.loss.sum(), rel=0, abs=3e-14 * before)
 
 
 @pytest.mark.parametrize("e", [0.7, 0.99])

@@ -1,0 +1,94 @@
+"""A constant load g moves the rest position of a mode by g/omega^2, and a mode of zero frequency drifts."""
+
+from dataclasses import astuple, replace
+
+import numpy as np
+import pytest
+from oscillators import modes_on_stop
+
+from contact import (
+    LinearContact,
+    NordmarkMap,
+    State,
+    Stop,
+    StroboscopicMap,
+    before_collision,
+    collisions,
+    first_collision,
+    orbits,
+    simulate,
+)
+from contact.integrators import CentralDifference, Exact, GeneralisedAlpha, Splitting
+
+LOAD, REFUSED = np.array([70.0, -150.0]), "load (is|drives)"
+CHANGE = orbits.Change(gap=1.0)
+METHODS = [Exact(), *(kind(step=1e-5) for kind in (CentralDifference, GeneralisedAlpha, Splitting))]
+
+
+def strobed(o, excess=0.02):
+    return StroboscopicMap(oscillator=o.with_excess(excess))
+
+
+def thrown(rest):
+    return State(displacement=rest, velocity=np.full(2, 0.3))
+
+
+# each call takes an oscillator and its rest position
+CALLS = {
+    "grazing_amplitude": lambda o, rest: o.grazing_amplitude(),
+    "excess": lambda o, rest: o.excess,
+    "drive_at": lambda o, rest: o.drive_at(o.tip(rest) + 0.002, 0.1),
+    "steady": lambda o, rest: StroboscopicMap(oscillator=o).steady().displacement - rest,
+    "before_collision": lambda o, rest: before_collision(o).displacement - rest,
+    "first_collision": lambda o, rest: astuple(first_collision(o.with_excess(0.3))),
+    "collisions": lambda o, rest: astuple(
+        collisions(simulate(o, thrown(rest), periods=4), unfinished="drop")[0]
+    ),
+    "orbit": lambda o, rest: strobed(o).orbit(thrown(rest), 20).end.displacement - rest,
+    "factors": lambda o, rest: strobed(o).orbit(thrown(rest), 2, factors=[1.2, 0.9]).end.displacement - rest,
+    "jacobians": lambda o, rest: strobed(o).jacobians(thrown(rest), 3)[0][-1][0],
+    "settle": lambda o, rest: (
+        orbits.settle(strobed(o, -0.1), strobed(o, -0.1).steady(), most_cycles=64).end.displacement - rest
+    ),
+    "scan": lambda o, rest: orbits.AmplitudeScan(oscillator=o, most_cycles=128)(20.0, [-0.2, -0.1]).period,
+}
+FOLLOWED = {
+    **{m.name: lambda o, rest, m=m: simulate(o, thrown(rest), periods=2, method=m).end.displacement - rest
+       for m in METHODS},
+    "nordmark": lambda o, rest: NordmarkMap.from_oscillator(o, restitution=0.5).alpha,
+    "no changes": lambda o, rest: orbits.motion_derivatives(o, thrown(rest), [], periods=2).strobes,
+}  # fmt: skip
+WITHOUT = {
+    "cloud": lambda o, rest: orbits.cloud(strobed(o, -0.1), strobed(o, -0.1).steady(), 2, deviation=1e-3),
+    "kick": lambda o, rest: orbits.KickFamily(oscillator=o, period=1),
+    "shooting": lambda o, rest: orbits.Shooting(oscillator=o, period=1),
+    "changes": lambda o, rest: orbits.motion_derivatives(
+        o, thrown(rest), [orbits.Change(gap=1.0)], periods=1
+    ),
+}
+
+
+def loaded(omega):
+    law = LinearContact(stiffness=1e6)
+    return modes_on_stop(omega, 3.0, [1.0, -0.8], [1.0, 0.3], law=law, drive=(22.2, 0.01), load=LOAD)
+
+
+@pytest.mark.parametrize("name", CALLS | FOLLOWED | WITHOUT)
+def test_a_load_moves_the_rest_position_or_is_refused(name):
+    stiff, call, still = loaded([154.0, 900.0]), (CALLS | FOLLOWED | WITHOUT)[name], np.zeros(2)
+    rest = LOAD / stiff.model.omega**2
+    moved = replace(stiff, load=None, stop=Stop(gap=stiff.stop.gap - stiff.tip(rest), law=stiff.stop.law))
+    right = call(moved, still)
+    if name in WITHOUT:
+        with pytest.raises(ValueError, match=REFUSED):
+            call(stiff, rest)
+    else:
+        np.testing.assert_allclose(call(stiff, rest), right, rtol=1e-8, atol=1e-12)
+    if name not in FOLLOWED:
+        with pytest.raises(ValueError, match=REFUSED):
+            call(loaded([0.0, 0.0]), still)
+
+
+def test_a_load_moves_a_free_body_that_touches_the_stop_at_rest():
+    body = modes_on_stop(0.0, gap=0.0, load=-9.81)
+    assert simulate(body, duration=0.1).end.displacement[0] == pytest.approx(-0.5 * 9.81 * 0.01, rel=1e-14)
