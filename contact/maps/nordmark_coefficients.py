@@ -45,8 +45,8 @@ def coefficients(
     own = damped / (2.0 * math.pi)
     require(
         n12 > 0.0,
-        f"drive_frequency is {drive_frequency:g} Hz, the mode swings at {own:.6g} Hz; the map has p_m below "
-        f"resonance, from {own / 1.5:.6g} to {own:.6g} Hz",
+        f"drive_frequency is {drive_frequency} Hz; the map has p_m only below resonance, here from "
+        f"{own / 1.5:.6g} to {own:.6g} Hz",
     )
     delay_term = delay / (2.0 * n12 * (1.0 + restitution) ** 2)
     return n11 + n22, math.exp(-decay_rate / drive_frequency), delay_term, math.floor(turns)

@@ -175,18 +175,18 @@ def error_of_fold(answer: Values, reference: Values) -> float:
     return float(abs(answer[0] - reference[0]) / max(abs(reference[0]), letter.AMPLITUDE_STABILITY))
 
 
-def relative_error(answer: Values, reference: Values) -> float:
-    """The largest difference, relative to the reference."""
-    return float(np.max(np.abs(answer / reference - 1.0)))
-
-
 def largest_error(answer: Values, reference: Values) -> float:
     """The largest absolute difference."""
     return float(np.max(np.abs(answer - reference)))
 
 
 QUANTITIES: Mapping[str, tuple[Ask, Distance, bool, bool]] = {
-    "response": (lambda at, f, _=0.0: np.array([at(f).grazing_amplitude()]), relative_error, False, False),
+    "response": (
+        lambda at, f, _=0.0: np.array([at(f).grazing_amplitude()]),
+        lambda answer, reference: largest_error(answer / reference, reference / reference),
+        False,
+        False,
+    ),
     "kick": (partial(collisions, "kick"), largest_error, False, False),
     "restitution": (partial(collisions, "restitution"), largest_error, False, False),
     "fold": (partial(fold_of_born, kick_fold), error_of_fold, True, True),
@@ -225,11 +225,10 @@ def questions(
 
         return partial(distances(answer, distance), whole.n_modes)
 
+    drives = sorted(scene.drive.frequencies_hz)
     for quantity in sorted(needs, key=list(QUANTITIES).index):
         name = quantity.removesuffix("_middle")
-        for frequency in (
-            sorted(scene.drive.frequencies_hz) if QUANTITIES[quantity][2] else [middle_of(scene)]
-        ):
+        for frequency in drives if QUANTITIES[quantity][2] else [middle_of(scene)]:
             off = off_of(quantity, frequency)
             if math.isfinite(off(whole.n_modes)):
                 yield Question(f"{name} at {frequency:g} Hz", needs[quantity], off)
@@ -293,9 +292,7 @@ def least_modes(
             reason = f"all that were tried, for {worst.words if worst else 'the drive'}"
         elif worst is not None:
             reason = f"{worst.words}, good to {worst.off(least):.1e} against {sharp} modes"
-        for name, places in lacking.items():
+        for name, at in lacking.items():
             if name:
-                reason += (
-                    f"; no {name} at {', '.join(places)} Hz: response and first collision compared there"
-                )
+                reason += f"; no {name} at {', '.join(at)} Hz: response and first collision compared there"
     return scene.replace({"modes.count": least}, provenance="least"), f"modes kept: {least} ({reason})"

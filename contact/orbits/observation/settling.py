@@ -129,12 +129,12 @@ def born(
 ) -> Settled[S]:
     """The orbit on which the motion settles when the drive is raised to `excess` [1] in one step.
 
-    The motion starts without impacts at `below` [1], below zero and `excess`; the amplitude of `strobed` does
+    The motion starts without impacts at the excess `below` [1], below zero.  The amplitude of `strobed` does
     not matter.  `most_cycles` bounds the transient: orbits born at grazing settle in some hundred periods.
     """
     require_map(strobed)
     raised = strobed.at(excess)
-    require_within("below", below, "[1]", below=min(excess, 0.0))
+    require_within("below", below, "[1]", below=0)
     return settle(raised, strobed.at(below).steady(), most_cycles=most_cycles)
 
 

@@ -19,9 +19,12 @@ from numpy.typing import NDArray
 
 import beam
 from beam import LeafSpring, ModalModel, Modes, StripSection
-from studies.shell.scene.key import OPEN, SceneError
+from studies.shell.scene.key import OPEN, SceneError, shown
 from studies.shell.scene.keys import MODE_LISTS
 from studies.shell.scene.values import Scene
+
+SHORTEST = 1e-6
+"""Free period [s] of Eq. (1), at least."""
 
 READOUT = "readout"
 """Name of the read-out in every model."""
@@ -219,6 +222,9 @@ def shift_at_gap(scene: Scene) -> float:
 def single_mode_of(scene: Scene) -> ModalModel:
     """Eq. (1) of the letter: one mode of unit mass with the period and the decay rate in [single_mode]."""
     keys = {"free_period": "single_mode.free_period_s", "decay_rate": "single_mode.decay_rate_per_s"}
+    if not scene.single_mode.free_period_s >= SHORTEST:
+        given, valid = shown(scene.single_mode.free_period_s), f"at least {SHORTEST:g} (unit s)"
+        raise SceneError(f"{keys['free_period']} must be {valid}, or -1 for that of mode 1, not {given}")
     model = scene.make(beam.single_mode, keys)
     return dataclasses.replace(model, readouts={READOUT: model.phi})
 
