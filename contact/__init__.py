@@ -80,16 +80,8 @@ from contact.laws import (
 from contact.maps.nonlinear_mode import NonlinearMode
 from contact.maps.nordmark import NordmarkMap
 from contact.maps.nordmark_bands import Band, band, bands
-from contact.maps.nordmark_orbits import (
-    MapFamily,
-    MaximalOrbit,
-    fold,
-    maximal_orbits,
-    maximal_period,
-    maximal_periods,
-    stable_range,
-)
-from contact.maps.stroboscope import StrobedMap, StrobedOrbit, StroboscopicMap, strobed_orbits
+from contact.maps.nordmark_orbits import MapFamily, MaximalOrbit, maximal_period, maximal_periods
+from contact.maps.stroboscope import StrobedMap, StrobedOrbit, StroboscopicMap
 from contact.orbits.families.single_impact import MaximalFamily, SingleImpactOrbit
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
