@@ -190,7 +190,7 @@ BEAM = (
     of(beam.MeasuredDecay, dict(decay_rate=3.56),
        kind=dict(others=each("strips", beam.StripDamping), scaled=1), value=dict(decay_rate=-3.56)),
     of(beam.reduce, lambda: dict(modes=modes(), damping=beam.ConstantRatio(ratio=0.01), count=2),
-       kind=dict(modes=mesh(), damping=0.01, coupled_only="yes"), value=dict(count=each(0, 50))),
+       kind=dict(modes=mesh(), damping=0.01), value=dict(count=each(0, 50))),
     of(beam.ModalModel, MODAL | dict(static_compliance=1e-3, tip_mass=0.004),
        kind=dict(omega=each("150", [150.0, 1j], [True, False]), readouts=[1.0, 2.0]),
        value=dict(omega=[], decay_rate=[-3.0, 9.0], phi=[10.0], participation=[NAN, 1.0], tip_mass=-1.0)),
