@@ -10,10 +10,10 @@ from .modes import Modes
 from .parameters import require, require_kind, require_whole
 
 
-def reduce(
-    modes: Modes, damping: Damping, count: int | None = None, *, coupled_only: bool = True
-) -> ModalModel:
+def reduce(modes: Modes, damping: Damping, count: int | None = None) -> ModalModel:
     """Return the modal model of a discretized spring, with the static compliance of the whole spring [m/N].
+
+    Modes that neither the drive nor a force on the tip can excite (phi = participation = 0) are left out.
 
     Parameters
     ----------
@@ -22,23 +22,18 @@ def reduce(
     damping : Damping
         Rule for the decay rate of each mode [1/s].
     count : int, optional
-        Number of modes to keep, lowest first; all of `modes` by default.
-    coupled_only : bool
-        Drop the modes that neither the drive nor a force on the tip can excite (phi = participation = 0)
-        before counting.
+        Number of modes to keep, lowest first; all by default.
 
     Raises
     ------
     ValueError
-        If `modes` holds fewer than `count` modes of the wanted kind.
+        If `modes` holds fewer than `count` such modes.
     """
     require_kind("modes", modes, Modes, "Modes, from natural_modes")
     require_rule("damping", damping)
-    require_kind("coupled_only", coupled_only, bool, "True or False")
-    keep = np.flatnonzero(modes.coupled) if coupled_only else np.arange(modes.omega.size)
+    keep = np.flatnonzero(modes.coupled)
     wanted = keep.size if count is None else require_whole("count", count, "modes", low=0)
-    kind = "coupled modes" if coupled_only else "modes"
-    words = f"it must lie between 1 and the {keep.size} {kind} among the {modes.omega.size} computed"
+    words = f"it must lie between 1 and the {keep.size} coupled modes among the {modes.omega.size} computed"
     require(1 <= wanted <= keep.size, f"count is {wanted} modes; {words} (natural_modes computes more)")
     keep = keep[:wanted]
     return ModalModel(

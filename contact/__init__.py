@@ -56,8 +56,6 @@ A motion that cannot be followed raises a `ContactError` (`UnresolvedCrossing`, 
 mass-normalised (q in m kg^0.5).  A module with physics opens with its equations.
 """
 
-from dataclasses import replace
-
 from contact.collision import Collision, before_collision, collisions, first_collision
 from contact.drive import HarmonicDrive
 from contact.errors import (
@@ -79,20 +77,11 @@ from contact.laws import (
     LinearContact,
     NewtonRestitution,
 )
-from contact.machine import renamed
 from contact.maps.nonlinear_mode import NonlinearMode
 from contact.maps.nordmark import NordmarkMap
 from contact.maps.nordmark_bands import Band, band, bands
-from contact.maps.nordmark_orbits import (
-    MapFamily,
-    MaximalOrbit,
-    fold,
-    maximal_orbits,
-    maximal_period,
-    maximal_periods,
-    stable_range,
-)
-from contact.maps.stroboscope import StrobedMap, StrobedOrbit, StroboscopicMap, strobed_orbits
+from contact.maps.nordmark_orbits import MapFamily, MaximalOrbit, maximal_period, maximal_periods
+from contact.maps.stroboscope import StrobedMap, StrobedOrbit, StroboscopicMap
 from contact.orbits.families.single_impact import MaximalFamily, SingleImpactOrbit
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
@@ -103,20 +92,3 @@ __all__ = sorted(
     name for name, one in globals().items() if getattr(one, "__module__", "").startswith("contact.")
 )
 """All classes and functions imported above, so that each name stands once."""
-
-renamed.forward_modules(
-    {
-        "contact.nordmark": "contact.maps.nordmark",
-        "contact.stroboscope": "contact.maps.stroboscope",
-        "contact.nonlinear_mode": "contact.maps.nonlinear_mode",
-        "contact.orbits.shooting": "contact.orbits.families.shooting",
-        "contact.orbits.single_impact": "contact.orbits.families.single_impact",
-        "contact.orbits.kick": "contact.orbits.families.kick",
-        "contact.orbits.continuation": "contact.orbits.branches.continuation",
-    }
-)
-StrobedNordmarkMap = renamed.forwarded_call(
-    "StrobedNordmarkMap(map=nordmark, rho=rho)",
-    "replace(nordmark, control=rho)",
-    lambda *, map, rho=0.0: replace(map, control=rho),
-)

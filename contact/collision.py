@@ -104,38 +104,25 @@ def _ringing(motion: Motion, k: int, u: np.ndarray, v: np.ndarray) -> float:
     return motion.most_at_tip(sizes)
 
 
-def collisions(
-    oscillator: ImpactOscillator | Trajectory,
-    trajectory: Trajectory | None = None,
-    *,
-    unfinished: str = "refuse",
-) -> list[Collision]:
-    """Group the impacts of a trajectory into collisions, in the order of time: ``collisions(trajectory)``.
+def collisions(trajectory: Trajectory, *, unfinished: str = "refuse") -> list[Collision]:
+    """Group the impacts of a trajectory into collisions, in the order of time.
 
     A collision that had begun before the trajectory is left out.  ValueError is raised for an unfinished last
-    collision, unless it may be dropped, and for another oscillator.
+    collision, unless it may be dropped.
 
     Parameters
     ----------
-    oscillator : ImpactOscillator, optional
-        ``collisions(oscillator, trajectory)`` checks that this oscillator has made the trajectory.
     trajectory : Trajectory
     unfinished : {"refuse", "drop"}
         What to do with a last collision that is not final when the trajectory ends.
     """
-    given = oscillator if trajectory is None else trajectory
-    run = require_kind("trajectory", given, Trajectory, "a Trajectory, from simulate")
+    run = require_kind("trajectory", trajectory, Trajectory, "a Trajectory, from simulate")
     motion, impacts, k = run.oscillator.motion(), run.impacts, run.oscillator.model.leading_mode
     single = with_only_mode(motion, k)
     words = (
         "load drives a higher mode of zero frequency; it must be zero there for a virtual motion of mode 1"
     )
     require(not np.delete(motion.row(LOAD), k).any(), words)
-    if trajectory is not None:
-        other = require_kind("oscillator", oscillator, ImpactOscillator, "an ImpactOscillator")
-        pairs: Any = zip(motion, other.motion(), strict=True)
-        same = all(np.shape(a) == np.shape(b) and np.allclose(a, b) for a, b in pairs)
-        require(same, "oscillator differs from the one that moves in the trajectory; it must be the same")
     if unfinished not in ("refuse", "drop"):
         raise InvalidValue(f'unfinished is {unfinished!r}; it must be "refuse" or "drop"')
     rows = np.flatnonzero(impacts.kind != ImpactKind.GRAZE).tolist()

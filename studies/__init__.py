@@ -20,7 +20,7 @@ Importing this package from Python changes nothing.  As a program it first prepa
   workers with several threads each slow one another down twentyfold.
 - It makes sure that `beam` and `contact` are the packages beside this one.  The public index has other
   packages of both names, with which the studies would fail or compute something else.
-- It ends with one sentence at Ctrl-C during the imports, and runs commands of old names.
+- It ends with one sentence at Ctrl-C during the imports.
 """
 
 from __future__ import annotations
@@ -29,6 +29,7 @@ import importlib.util
 import os
 import signal
 import sys
+from itertools import pairwise
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -77,22 +78,11 @@ def start_as_program() -> None:
     refuse_foreign_packages()
 
 
-def run_old_name() -> None:
-    """Run a program by its old command, ``python -m studies.NAME``, and print the command of today."""
-    from studies.shell.programs import PART_OF, old_name
-
-    name = old_name(sys.orig_argv[1:])
-    if name is not None:
-        words = PART_OF.get(name, name).split()
-        print(f"python -m studies.{name} is now python -m studies {' '.join(words)}", file=sys.stderr)
-        from studies.__main__ import main
-
-        raise SystemExit(main([*words, *sys.argv[1:]]))
-
-
 program = False
 """Whether this process runs a study as a program, and not as part of another one."""
 
 if sys.argv[:1] == ["-m"]:  # as long as the interpreter looks for the module that it was told to run
     start_as_program()
-    run_old_name()
+    if any(a == "-m" and b.startswith("studies.") for a, b in pairwise(sys.orig_argv)):  # it would do nothing
+        print("a study runs as python -m studies NAME; --list gives the names", file=sys.stderr)
+        raise SystemExit(2)

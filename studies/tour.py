@@ -50,7 +50,7 @@ from contact import collisions, simulate
 
 times = settled.time + np.linspace(0.0, 4.0 * beam.period, 4001)
 motion = simulate(beam, settled, periods=5, times=times)
-hit = collisions(beam, motion)[0]
+hit = collisions(motion)[0]
 print(f"effective restitution {hit.restitution:.2f}, delay {1e3 * hit.delay:.2f} ms, kick {hit.kick:.2f}")
 
 # %% How far below grazing the orbit lives on: followed to its fold

@@ -1,8 +1,7 @@
-"""How Python becomes machine code, and how old names reach the new ones.
+"""How Python becomes machine code.
 
 `compiled`       `kernel` compiles a function and keeps its machine code; `inlined` and `part` are compiled
                  into their callers
 `vector_loops`   sums over rows of numbers with the vector instructions of the processor
 `warm_up`        a program that compiles all kernels once: ``python -m contact.machine.warm_up``
-`renamed`        old names of functions and modules, which forward to the new ones
 """

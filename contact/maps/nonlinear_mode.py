@@ -150,11 +150,6 @@ class NonlinearMode:
         theta = math.copysign(math.acos(half), math.cos(self.numbers[4] * self.grazing[1]))
         return 1.0 / (self.frequency * (1.0 + theta / (2.0 * math.pi)))
 
-    @property
-    def effective_decay_rate(self) -> float:
-        """Decay rate of the linear mode whose deviations fade as fast under this drive [1/s]."""
-        return float(-math.log(np.linalg.det(self.monodromy)) * self.frequency)
-
     @cached_property
     def _steady(self) -> tuple[float, float]:
         """x and x' of the motion without impacts at the strobe."""

@@ -174,21 +174,6 @@ def positive_roots(a: float, b: float, c: float) -> list[float]:
     return sorted(root for root in found if root > 0.0)
 
 
-def maximal_orbits(nordmark: NordmarkMap, period: int, rho: float) -> tuple[MaximalOrbit, ...]:
-    """The orbits of the map `nordmark` with this `period` at `rho`, by `MapFamily.at_rho`."""
-    return MapFamily(nordmark, period).at_rho(rho)
-
-
-def fold(nordmark: NordmarkMap, period: int) -> MaximalOrbit | None:
-    """The orbit of the map `nordmark` at which node and saddle of this `period` meet, by `MapFamily.fold`."""
-    return MapFamily(nordmark, period).fold()
-
-
-def stable_range(nordmark: NordmarkMap, period: int) -> tuple[float, float] | None:
-    """The interval of rho with a stable p_m, m = `period`, of the map `nordmark`; see `MapFamily`."""
-    return MapFamily(nordmark, period).stable_range()
-
-
 def maximal_period(nordmark: NordmarkMap) -> int:
     """The m with pi/m < theta <= pi/(m-1), theta the angle of the map `nordmark`; 0 without oscillation."""
     angle = require_kind("nordmark", nordmark, NordmarkMap, "a NordmarkMap").angle

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from beam.parameters import require, require_array, require_each, require_kind, require_whole
+from beam.parameters import require, require_array, require_kind, require_whole
 from contact.drive import split_time
 from contact.engine.event_loop import DONE
 from contact.engine.start import failure, start_of, state_of
@@ -146,22 +143,3 @@ class StroboscopicMap:
             first = last
         q, v = run.strobe_displacement[first - 1], run.strobe_velocity[first - 1]
         return found, State(displacement=q, velocity=v)
-
-
-def strobed_orbits(
-    maps: Sequence[StroboscopicMap], states: Sequence[State], count: int, *, workers: int | None = None
-) -> list[StrobedOrbit[State]]:
-    """``StroboscopicMap.orbit(state, count)`` of many `maps`, each from its own of the `states`, on threads.
-
-    Threads share the cores, since kernels release the interpreter lock.  By default `workers`, the number of
-    threads, is the number of cores.  Raises ValueError unless there is one state for each map, and the first
-    error of the orbits in their order.
-    """
-    if workers is not None:
-        require_whole("workers", workers, "threads")
-    maps = require_each("maps", maps, StroboscopicMap, "one StroboscopicMap for each state")
-    states = require_each("states", states, State, "one State for each map")
-    words = f"states has {len(states)} entries; it must have one for each of {len(maps)} maps"
-    require(len(maps) == len(states), words)
-    with ThreadPoolExecutor(max_workers=workers or os.cpu_count() or 1) as pool:
-        return list(pool.map(lambda strobed, state: strobed.orbit(state, count), maps, states))

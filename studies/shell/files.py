@@ -88,9 +88,9 @@ def plain(value: object) -> object:
     )
 
 
-def json_text(value: object, *, indent: int | None = 2) -> str:
+def json_text(value: object) -> str:
     """The value as JSON."""
-    return json.dumps(plain(value), indent=indent, allow_nan=False, ensure_ascii=False)
+    return json.dumps(plain(value), indent=2, allow_nan=False, ensure_ascii=False)
 
 
 def columns_of(kind: type, rows: Sequence[object]) -> list[str]:

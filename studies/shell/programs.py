@@ -39,17 +39,6 @@ TOOLS = ("report", "tour", "explore")
 STUDY = re.compile(r"^@study\(", re.MULTILINE)
 """What a file of a study has."""
 
-PART_OF = {
-    "attractors": "chart",
-    "benchmarks": "work_precision",
-    "finite_amplitude": "shape",
-    "motion": "time_trace --film",
-    "next_measurement": "identify",
-    "sensitivity": "last_period",
-    "spring_shape": "shape",
-}
-"""Studies of version 0.1 -> the study of which each is a part now."""
-
 MAIN = "transitions"
 """What `python -m studies` runs."""
 
@@ -132,20 +121,9 @@ def module_of(name: str) -> str:
 
 
 def unknown(name: str) -> str:
-    """The sentence on a study that does not exist, with the study that has its work, or the nearest name."""
-    found = [PART_OF[name]] if name in PART_OF else get_close_matches(name[:100], names(), n=1, cutoff=0.6)
+    """The sentence on a study that does not exist, with the nearest name."""
+    found = get_close_matches(name[:100], names(), n=1, cutoff=0.6)
     return f"there is no study {name[:100]}" + (f"; did you mean {found[0]}?" if found else "")
-
-
-def old_name(arguments: Sequence[str]) -> str | None:
-    """The NAME in `-m studies.NAME` or `-m studies.CHAPTER.NAME` among the arguments of the interpreter.
-
-    Returns None for other modules.
-    """
-    found = re.search(r"(?:^| )-m ?studies\.(\w+)(?:\.(\w+))?", " ".join(arguments))
-    if found is None or found[1] in ("shell", "physics", "__main__"):
-        return None
-    return found[2] if found[1] in CHAPTERS else found[1]
 
 
 def perform(study: str, command: str, arguments: Sequence[str], work: Callable[[TextIO], int]) -> int:

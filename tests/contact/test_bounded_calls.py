@@ -34,8 +34,8 @@ CALLS = [entry for entry in (*CONTACT, *ORBITS) if entry.over]
 TWELVE = ("born", "fold_of", "folds_of", "orbit_end", "orbit_exponents")
 """Calls that the long form makes with twelve modes too: each of them once took ten seconds and more."""
 
-WITHOUT_A_LAW = {"band", "bands", "before_collision", "fold", "maximal_orbits", "maximal_period"}
-WITHOUT_A_LAW |= {"maximal_periods", "stable_range", "PeriodicOrbit.failure"}
+WITHOUT_A_LAW = {"band", "bands", "before_collision", "maximal_period", "maximal_periods"}
+WITHOUT_A_LAW |= {"PeriodicOrbit.failure"}
 """Closed forms of the letter's map and of flights, and a method that makes an error."""
 COMPUTING = ("KickFamily", "PeriodicOrbit", "Shooting", "StroboscopicMap")
 

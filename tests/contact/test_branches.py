@@ -99,7 +99,7 @@ def test_no_bracket_closes_because_a_long_step_fell_off(first_step: float, relat
         nordmark = NordmarkMap.from_oscillator(oscillator)
         for strobed, exact in (
             (StroboscopicMap(oscillator=oscillator), excess),
-            (nordmark, nordmark.excess(contact.fold(nordmark, period).rho)),
+            (nordmark, nordmark.excess(contact.MapFamily(nordmark, period).fold().rho)),
         ):
             start = orbits.born(strobed)
             end = orbits.orbit_end(

@@ -38,9 +38,7 @@ def test_energy_of_an_undriven_collision_is_all_accounted_for(n_modes: int, law:
     start[0] = -0.0009
     state = contact.State(displacement=start, velocity=np.zeros(n_modes))
     first = float(oscillator.energy(state.displacement, state.velocity))
-    found = contact.collisions(
-        oscillator, contact.simulate(oscillator, state, duration=0.4), unfinished="drop"
-    )
+    found = contact.collisions(contact.simulate(oscillator, state, duration=0.4), unfinished="drop")
     used = [c for c in found if not c.forced_by_ringing]
     plastic = n_modes == 1 and law == newton(0.0)  # nothing is left that could reach the wall again
     assert len(used) >= (1 if plastic else 3)
@@ -69,7 +67,7 @@ def test_collision_does_not_depend_on_where_the_motion_is_started(law: contact.C
     oscillator = spring(6, law)
     start = contact.before_collision(oscillator)
     run = contact.simulate(oscillator, start, periods=40)
-    found = contact.collisions(oscillator, run, unfinished="drop")
+    found = contact.collisions(run, unfinished="drop")
     chosen = found[4]
     before = found[3].end
     times = before + np.array([0.05, 0.3, 0.6, 0.95, 0.9999]) * (chosen.first_touch - before)
@@ -91,7 +89,7 @@ def test_first_collision_looks_for_one_long_enough_or_says_so() -> None:
     resting = equation_1(23.4, newton(0.3), -0.02)
     from_rest = contact.first_collision(resting, contact.State.rest(1))
     run = contact.simulate(resting, periods=64)
-    assert from_rest == contact.collisions(resting, run, unfinished="drop")[0]
+    assert from_rest == contact.collisions(run, unfinished="drop")[0]
     assert from_rest.first_touch > 3 / 23.4  # not within the first try of three periods
     below = equation_1(22.2, newton(0.3), -0.01)
     with pytest.raises(ValueError, match="periods is 64"):

@@ -37,7 +37,7 @@ def test_every_number_is_what_its_definition_says(n_modes: int, law: ContactLaw,
     excess = 0.05 if frequency > 20 else 0.8
     oscillator = spring(n_modes, law, damping=0.01, frequency=frequency, excess=excess)
     run = simulate(oscillator, before_collision(oscillator), periods=60)
-    found = collisions(oscillator, run, unfinished="drop")
+    found = collisions(run, unfinished="drop")
     impacts, period = run.impacts, oscillator.period
     assert len(found) > 20
     starts = impacts.start[impacts.kind == 0]  # each belongs to one collision
@@ -149,7 +149,7 @@ def test_minimum_of_the_outgoing_motion_ends_a_collision(before_minimum: float) 
         loss=none,
         kind=none.astype(int),
     )
-    found = collisions(oscillator, dataclasses.replace(real, impacts=touches), unfinished="drop")
+    found = collisions(dataclasses.replace(real, impacts=touches), unfinished="drop")
     assert [c.impacts for c in found] == ([2] if before_minimum > 0 else [1, 1])
     assert found[0].kick == pytest.approx(1.5, rel=1e-12)
     assert found[0].restitution == pytest.approx(0.5, rel=1e-12)

@@ -12,7 +12,7 @@ from oscillators import apart
 from simulated_orbit import differences, touches
 
 import contact
-from contact.maps.nordmark_orbits import fold as fold_of_map
+from contact.maps.nordmark_orbits import MapFamily
 from contact.orbits import KickFamily, Shooting, settle
 
 T, MU, TAU, GAP = 40.80e-3, 3.56, 0.1, 0.0107
@@ -68,7 +68,7 @@ def test_the_fold_shifts_by_the_maps_part_of_the_hysteresis_at_a_band_edge(perio
         law = contact.DelayedRestitution(restitution=TAU, delay=delay)
         fold = KickFamily(oscillator=equation_1(frequency, law), period=period).fold(speeds=(1e-7, 1.0))
         nordmark = contact.NordmarkMap.from_oscillator(equation_1(frequency))
-        share = map_shift(frequency, period, delay) / -fold_of_map(nordmark, period).rho
+        share = map_shift(frequency, period, delay) / -MapFamily(nordmark, period).fold().rho
         wrong.append((fold.excess - free.excess) / -free.excess / share - 1.0)
     assert abs(wrong[1]) < 2e-3
     assert abs(wrong[1]) < 0.3 * abs(wrong[0])

@@ -116,7 +116,7 @@ def test_a_collision_is_the_exact_one_in_the_limit(name: str, law: contact.Conta
         errors.append(worst)
     assert errors[0] < 3e-3
     assert errors[1] < 1e-9 or errors[1] < 0.75 * errors[0]
-    mine, truth = (contact.collisions(oscillator, one, unfinished="drop")[0] for one in (run, exact))
+    mine, truth = (contact.collisions(one, unfinished="drop")[0] for one in (run, exact))
     assert mine.kick == pytest.approx(truth.kick, abs=1e-2)
     if truth.returns:
         assert mine.restitution == pytest.approx(truth.restitution, abs=2e-2)

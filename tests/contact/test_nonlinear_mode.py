@@ -33,12 +33,17 @@ def acceleration(one: NonlinearMode, force: float):
     return rate
 
 
+def decay_rate(one: NonlinearMode) -> float:
+    """Of the linear mode whose deviations fade as fast under this drive [1/s]."""
+    return -math.log(np.linalg.det(one.monodromy)) / one.period
+
+
 @pytest.mark.parametrize("frequency", FREQUENCIES)
 def test_without_cubic_terms_it_is_eq_1(frequency: float) -> None:
     """Grazing drive, effective period, what is born (strobes are at another phase of the drive)."""
     one, linear = mode(LINEAR, frequency), oscillator(frequency)
     assert one.effective_period == pytest.approx(40.80e-3, rel=1e-12)
-    assert one.effective_decay_rate == pytest.approx(3.56, rel=1e-10)
+    assert decay_rate(one) == pytest.approx(3.56, rel=1e-10)
     assert mode(LINEAR, 26.0).effective_period == pytest.approx(40.80e-3, rel=1e-12)  # above resonance
     drive = one.grazing[0] / one.numbers[4] ** 2  # the base's amplitude whose inertia pushes as much
     assert drive == pytest.approx(linear.grazing_amplitude(), rel=1e-12)
@@ -117,10 +122,10 @@ def test_effective_period_and_decay_rate(cubic: tuple[float, float], close: floa
         turn = math.acos(0.5 * trace / math.sqrt(det)) / (2 * math.pi)
         turn = turn if frequency < 1.0 / one.free_period else -turn
         assert one.effective_period == pytest.approx(1.0 / (frequency * (1.0 + turn)), rel=1e-8)
-        assert one.effective_decay_rate == pytest.approx(-math.log(det) / one.period, rel=1e-6)
+        assert decay_rate(one) == pytest.approx(-math.log(det) / one.period, rel=1e-6)
         x = runs[0].sol(np.linspace(*span, 65)[:-1])[0]
         averaged = one.decay_rate * np.mean(1.0 / (1.0 + one.inertia * x**2))
-        assert one.effective_decay_rate == pytest.approx(averaged, rel=1e-4)
+        assert decay_rate(one) == pytest.approx(averaged, rel=1e-4)
         if close is not None:
             free, w = 2 * math.pi / one.free_period, one.numbers[4]
             k = free * (3 / 8 * one.stiffness - one.inertia / 4) * GAP**2

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from oscillators import modes_on_stop, newton
 
-from contact import NordmarkMap, bands, fold, maximal_orbits, maximal_period, maximal_periods, stable_range
+from contact import MapFamily, NordmarkMap, bands, maximal_period, maximal_periods
 
 T, MU, TAU = 0.0408, 3.56, 0.1
 TABLE = [(20.90, 3), (21.50, 4), (22.20, 5), (22.60, 6), (23.05, 8), (23.40, 11)]
@@ -63,7 +63,7 @@ def test_step_jacobian_and_iterate_agree(y_line: str) -> None:
 def test_folds_by_fifty_digit_newton(frequency: float, period: int, y_line: str) -> None:
     """Iterate the branches themselves; the fold is where a multiplier of the chain of Jacobians is one."""
     made = letter_map(frequency, y_line=y_line, delay=3e-5)
-    at_fold = fold(made, period)
+    at_fold = MapFamily(made, period).fold()
     assert at_fold.admissible and maximal_period(letter_map(frequency)) == period
     assert at_fold.trace == pytest.approx(1 + at_fold.determinant, abs=1e-12)
     with mp.workdps(50):
@@ -95,9 +95,9 @@ def test_folds_by_fifty_digit_newton(frequency: float, period: int, y_line: str)
 def test_orbits_repeat_and_have_their_multipliers(period: int, delay: float) -> None:
     """Both solutions are carried round by the branches (whichever side of zero their iterates lie)."""
     made = letter_map(20.9, delay=delay)
-    at_fold = fold(made, period)
+    at_fold = MapFamily(made, period).fold()
     rho = 0.05 if at_fold is None else at_fold.rho + 0.02
-    orbits = maximal_orbits(made, period, rho)
+    orbits = MapFamily(made, period).at_rho(rho)
     assert orbits
     for orbit in orbits:
         assert len(orbit.states) == period
@@ -120,16 +120,16 @@ def test_orbits_repeat_and_have_their_multipliers(period: int, delay: float) -> 
 @pytest.mark.parametrize(("frequency", "period"), TABLE)
 def test_a_second_impact_ends_the_stable_range(frequency: float, period: int, y_line: str) -> None:
     made = letter_map(frequency, y_line=y_line)
-    ends = stable_range(made, period)
+    ends = MapFamily(made, period).stable_range()
     assert ends is not None
     low, high = ends
-    assert low == pytest.approx(fold(made, period).rho, rel=1e-14)
+    assert low == pytest.approx(MapFamily(made, period).fold().rho, rel=1e-14)
     assert high > 0  # in the map it is never below grazing; in Eq. (1) it may be
-    before, after = (maximal_orbits(made, period, high + side * 1e-6)[-1] for side in (-1, 1))
+    before, after = (MapFamily(made, period).at_rho(high + side * 1e-6)[-1] for side in (-1, 1))
     assert before.admissible and before.stable and after.stable and not after.admissible
     assert max(after.states[1:, 0]) == pytest.approx(0, abs=1e-4)
     for rho, same in ((high - 1e-4, True), (high + 1e-4, False)):
-        node = maximal_orbits(made, period, rho)[-1]
+        node = MapFamily(made, period).at_rho(rho)[-1]
         later = made.iterate(node.states[0], rho, 3000)[-period:]
         assert np.allclose(np.sort(later[:, 0]), np.sort(node.states[:, 0]), atol=1e-8) is same
 
@@ -140,15 +140,15 @@ def test_band_edges() -> None:
         m = entry.period
         assert entry.upper == pytest.approx(2 * m / ((2 * m + 1) * T), rel=1e-14)
         made = letter_map(entry.upper * (1 - 1e-6))
-        at_fold = fold(made, m)
+        at_fold = MapFamily(made, m).fold()
         assert at_fold is not None and -1e-5 < at_fold.rho < 0 and maximal_period(made) == m
-        past = fold(letter_map(entry.upper * (1 + 1e-6)), m)
+        past = MapFamily(letter_map(entry.upper * (1 + 1e-6)), m).fold()
         assert past is None  # no hysteresis at the upper edge, no fold above it
     for below, entry in pairwise(found):
         assert entry.lower < below.upper < entry.upper  # neighbours overlap
         for side in (-1, 1):
             made = letter_map(entry.lower * (1 + side * 1e-6))
-            node = maximal_orbits(made, entry.period, 0.0)[-1]
+            node = MapFamily(made, entry.period).at_rho(0.0)[-1]
             assert node.admissible is (side > 0)
             assert (entry.period in maximal_periods(made)) is (side > 0)
         middle = 0.5 * (entry.lower + below.upper)
@@ -170,14 +170,14 @@ def test_period_ten_needs_another_period_or_frequency() -> None:
 def test_overdamped_map_adds_periods_and_has_no_fold() -> None:
     made = NordmarkMap.from_mode(omega=60.0, decay_rate=200.0, drive_frequency=40.0, restitution=0.0)
     assert made.alpha**2 > 4 * made.gamma and maximal_period(made) == 0 and maximal_periods(made) == ()
-    assert all(fold(made, m) is None for m in range(1, 8))
-    assert all(maximal_orbits(made, m, -1e-3) == () for m in range(1, 8))
+    assert all(MapFamily(made, m).fold() is None for m in range(1, 8))
+    assert all(MapFamily(made, m).at_rho(-1e-3) == () for m in range(1, 8))
     seen = []
     for rho in np.geomspace(1e-6, 0.5, 100):
         tail = made.iterate([-0.1, 0.0], rho, 3000)[-840:, 0]
         period = next((m for m in range(1, 30) if np.allclose(tail[m:], tail[:-m], atol=1e-9)), 0)
         if period and np.sum(tail[:period] > 0) == 1:
-            node = maximal_orbits(made, period, rho)[-1]
+            node = MapFamily(made, period).at_rho(rho)[-1]
             assert np.allclose(np.sort(tail[:period]), np.sort(node.states[:, 0]), atol=1e-8)
             seen.append(period)
     assert sorted(set(seen)) == list(range(2, max(seen) + 1)) and max(seen) > 9
@@ -191,7 +191,7 @@ def window(nordmark: NordmarkMap, period: int) -> tuple[float, float] | None:
         low, high = math.log(1e-4), math.log(1e6)
         for _ in range(60):
             middle = 0.5 * (low + high)
-            orbits = maximal_orbits(nordmark, period, size * math.exp(middle))
+            orbits = MapFamily(nordmark, period).at_rho(size * math.exp(middle))
             before = not any(o.stable for o in orbits) if unstable else any(o.admissible for o in orbits)
             low, high = (middle, high) if before else (low, middle)
         ends.append(size * math.exp(middle))

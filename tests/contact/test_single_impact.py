@@ -12,7 +12,7 @@ from simulated_orbit import EQUATION_1
 
 from beam import single_mode
 from contact import LinearContact, MaximalFamily, NordmarkMap, Stop, StroboscopicMap
-from contact.maps.nordmark_orbits import fold as map_fold
+from contact.maps.nordmark_orbits import MapFamily
 
 T, MU, TAU = 0.0408, 3.56, 0.1
 
@@ -67,7 +67,7 @@ def test_ratio_to_the_map_at_a_band_edge() -> None:
                 drive_frequency=frequency, free_period=T, decay_rate=MU, restitution=tau
             )
             exact = equation_1(frequency, period, restitution=tau).fold().excess
-            errors.append(abs(chart.excess(map_fold(chart, period).rho) / exact - limit))
+            errors.append(abs(chart.excess(MapFamily(chart, period).fold().rho) / exact - limit))
         assert errors[1] < 0.15 * errors[0] and errors[1] < 2e-3
 
 

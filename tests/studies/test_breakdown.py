@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from contact import maximal_period, stable_range
+from contact import MapFamily, maximal_period
 from studies import letter
 from studies.experiment.breakdown.model import (
     FREQUENCY_HZ,
@@ -47,7 +47,7 @@ def test_the_beam_of_fig_5_has_its_period_and_damping_and_keeps_ball_and_gap(sce
 
 def test_the_map_puts_fig_5_in_the_region_of_a_stable_p3(scene):
     nordmark = nordmark_at(scene, FREQUENCY_HZ)
-    low, high = stable_range(nordmark, 3)
+    low, high = MapFamily(nordmark, 3).stable_range()
     assert maximal_period(nordmark) == 3 and low < 0 < high
     # and the letter's rho of the chaos is not its excess
     chaos = letter.BREAKDOWN["chaos_at"]

@@ -7,7 +7,7 @@ import pytest
 
 from beam import InvalidValue
 from contact import NordmarkMap, NotPeriodic, StroboscopicMap
-from contact.maps.nordmark_orbits import fold
+from contact.maps.nordmark_orbits import MapFamily
 from contact.orbits import Shooting, born, born_period, fold_of, orbit_end
 from studies.physics.descriptions import TITLES, fold_at, or_none, strobed_at, up_and_down, word
 from studies.shell.scene import nordmark_at, single_mode_at
@@ -30,7 +30,8 @@ def test_the_motion_of_a_description_ends_at_its_fold(letter_scene, letter_model
 def test_folds_by_other_routes(letter_scene, letter_model):
     """Map: its own closed form; Eq. (1): shooting; beam: continuation; kicks: next to the beam."""
     folds = {name: fold_at(name, letter_scene, FREQUENCY, M, letter_model) for name in (*TITLES, "kicks")}
-    assert folds["map"] == pytest.approx(fold(nordmark_at(letter_scene, FREQUENCY), M).excess, rel=1e-12)
+    closed = MapFamily(nordmark_at(letter_scene, FREQUENCY), M).fold()
+    assert folds["map"] == pytest.approx(closed.excess, rel=1e-12)
     shot = Shooting(oscillator=single_mode_at(letter_scene, FREQUENCY), period=M).fold()
     assert folds["single_mode"] == pytest.approx(shot.excess, rel=1e-8)
     beam = strobed_at("beam", letter_scene, FREQUENCY, letter_model).oscillator

@@ -24,7 +24,7 @@ from beam import InvalidValue
 from contact import NotPeriodic
 from studies import ROOT
 from studies.shell.files import write_atomically
-from studies.shell.programs import names, old_name, unknown
+from studies.shell.programs import names
 from studies.shell.scene import Scene, of_the_letter, read_scene
 from studies.shell.study import Run, study
 
@@ -263,27 +263,17 @@ def test_an_executor_that_is_not_there_is_refused(tmp_path, letter_scene, place,
 
 
 def test_an_unknown_study_is_answered_with_the_nearest_and_the_chapters():
-    for module in ("hysteresis", "experiment.hysteresis", "experiment.hysteresis.__main__"):
-        assert old_name(["-m", f"studies.{module}"]) == "hysteresis"
-    assert old_name(["-m", "studies.shell.programs"]) is old_name(["-m", "studies"]) is None
-    for command in (["studies", "transitons"], ["studies.transitons"]):
-        done = subprocess.run([sys.executable, "-m", *command], cwd=ROOT, capture_output=True, text=True)
-        assert done.returncode == 2 and "did you mean transitions?" in done.stderr and not done.stdout
-        assert all(f"    {name} " in done.stderr for name in names())
-
-
-@pytest.mark.parametrize(
-    ("word", "study"), [("sensitivity", "last_period"), ("next_measurement", "identify")]
-)
-def test_a_study_that_became_part_of_another_is_answered_with_that_one(word, study):
-    assert f"did you mean {study}?" in unknown(word)
-
-
-def test_an_old_command_runs_and_names_the_new_one():
-    command = [sys.executable, "-m", "studies.calibrate", "--help"]
+    command = [sys.executable, "-m", "studies", "transitons"]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
-    assert done.returncode == 0 and "usage: python -m studies calibrate" in done.stdout
-    assert done.stderr == "python -m studies.calibrate is now python -m studies calibrate\n"
+    assert done.returncode == 2 and "did you mean transitions?" in done.stderr and not done.stdout
+    assert all(f"    {name} " in done.stderr for name in names())
+
+
+def test_a_study_that_is_run_as_a_module_is_refused():
+    command = [sys.executable, "-m", "studies.experiment.hysteresis", "--help"]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
+    assert done.returncode == 2 and not done.stdout
+    assert done.stderr == "a study runs as python -m studies NAME; --list gives the names\n"
 
 
 def test_a_foreign_package_of_the_same_name_is_refused(tmp_path):

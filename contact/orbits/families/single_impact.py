@@ -31,7 +31,6 @@ Sources: letter of 1996, Eq. (1) and Fig. 3; A. B. Nordmark, J. Sound Vib. 145 (
 """
 
 import math
-import warnings
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -225,12 +224,6 @@ class MaximalFamily(SingleImpactFamily):
         newton_impact(motion, velocity, speed, motion.number0)
         jump = np.column_stack([np.zeros(velocity.size), velocity])
         return Kick(speed=speed, jump=jump, leaves=motion.number0 > 0.0)
-
-    @property
-    def arms(self) -> tuple[float, float]:
-        """The old name of `coefficients`."""
-        warnings.warn("MaximalFamily.arms is now coefficients", DeprecationWarning, stacklevel=2)
-        return self.coefficients
 
     @cached_property
     def coefficients(self) -> tuple[float, float]:

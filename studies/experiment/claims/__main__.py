@@ -28,7 +28,7 @@ from typing import Annotated
 
 import numpy as np
 
-from contact import NordmarkMap, maximal_orbits, maximal_period, maximal_periods
+from contact import MapFamily, NordmarkMap, maximal_period, maximal_periods
 from studies import letter
 from studies.experiment.claims.model import (
     RESTITUTIONS,
@@ -198,7 +198,7 @@ def period_adding(run: Run) -> Mapping[str, object]:
     there = [
         m
         for m, rho in places.items()
-        if any(orbit.stable and orbit.admissible for orbit in maximal_orbits(nordmark, m, rho))
+        if any(orbit.stable and orbit.admissible for orbit in MapFamily(nordmark, m).at_rho(rho))
     ]
     run.verdict(
         "period_adding",

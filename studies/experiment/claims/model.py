@@ -22,7 +22,7 @@ import numpy as np
 from scipy.optimize import bisect
 
 from beam import ModalModel
-from contact import MaximalFamily, NordmarkMap, fold, maximal_period, stable_range
+from contact import MapFamily, MaximalFamily, NordmarkMap, maximal_period
 from contact.orbits import Orbit, born_period
 from studies.physics.calibration import bare_cantilever, with_mass_ratio
 from studies.physics.descriptions import falls, strobed_at
@@ -85,7 +85,7 @@ def end_speed(family: MaximalFamily, fold: Orbit) -> float:
 
 def end_of_map(nordmark: NordmarkMap, period: int) -> float:
     """The excess of that of the map; NaN where p_m is not stable."""
-    top = (stable_range(nordmark, period) or (math.nan, math.nan))[1]
+    top = (MapFamily(nordmark, period).stable_range() or (math.nan, math.nan))[1]
     return nordmark.excess(top) if math.isfinite(top) else top
 
 
@@ -93,7 +93,7 @@ def node_at(scene: Scene, frequency: float) -> Node:
     """The node of the period that belongs to this frequency."""
     nordmark = nordmark_at(scene, frequency)
     m = maximal_period(nordmark)
-    family, of_map = family_at(scene, frequency, m), fold(nordmark, m)
+    family, of_map = family_at(scene, frequency, m), MapFamily(nordmark, m).fold()
     least, end = family.fold(), math.nan
     if least is not None and least.admissible:
         end = end_speed(family, least)

@@ -134,7 +134,7 @@ def orbit_collision(oscillator: ImpactOscillator) -> tuple[Collision | None, int
     if not settled.period or not settled.impacts:
         return None, settled.period
     trajectory = simulate(oscillator, settled.end, periods=2 * settled.period + 2)
-    found = collisions(oscillator, trajectory, unfinished="drop")
+    found = collisions(trajectory, unfinished="drop")
     return (found[0] if found else None), settled.period
 
 

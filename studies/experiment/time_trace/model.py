@@ -73,7 +73,7 @@ def trace_of(oscillator: ImpactOscillator, state: State, length: int) -> Trace:
     time = span * np.arange(length * PER_PERIOD) / (length * PER_PERIOD)
     run = simulate(oscillator, state, periods=length + 2, times=begin + time)
     touches = run.impacts.start[(run.impacts.kind == ImpactKind.IMPACT) & (run.impacts.start < begin + span)]
-    final = collisions(oscillator, run, unfinished="drop")
+    final = collisions(run, unfinished="drop")
     return Trace(
         time=time,
         tip=oscillator.tip(run.displacement),

@@ -57,11 +57,6 @@ class Transition:
     born: Mapping[str, int]
     grazing_amplitude: float
 
-    @property
-    def not_settled(self) -> list[str]:
-        """The excesses at which no period is born."""
-        return [excess for excess, period in self.born.items() if period == 0]
-
 
 @dataclass(frozen=True, kw_only=True)
 class AtFrequency:

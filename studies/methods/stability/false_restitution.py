@@ -39,7 +39,7 @@ def outcome(driven: ImpactOscillator, method: Integrator) -> tuple[float, float]
     """Restitution and kick of the first collision by `method`; NaN if its damping keeps the tip off the
     stop."""
     motion = simulate(driven, before_collision(driven), periods=2, method=method)
-    found = collisions(driven, motion, unfinished="drop")
+    found = collisions(motion, unfinished="drop")
     return (found[0].restitution, found[0].kick) if found else (math.nan, math.nan)
 
 
