@@ -10,21 +10,8 @@ import numpy as np
 import pytest
 from oscillators import equation_1, modes_on_stop, newton
 
-from contact import (
-    Chatter,
-    ContactError,
-    ContactLaw,
-    DelayedRestitution,
-    HertzContact,
-    HuntCrossley,
-    ImpactOscillator,
-    LinearContact,
-    State,
-    Stop,
-    Trajectory,
-    before_collision,
-    simulate,
-)
+import contact
+from contact import ContactError, HertzContact, ImpactOscillator, LinearContact, State, Trajectory, simulate
 from contact.integrators import Integrator
 from studies.methods import peers
 from studies.methods.peers import SOLVERS, OutsideSolver, adapters, installed_solvers, missing_solvers
@@ -46,7 +33,7 @@ def solver(label: str, tolerance: float) -> Integrator:
     return OutsideSolver(solver=label, tolerance=tolerance)
 
 
-def spring(n_modes: int, law: ContactLaw, *, excess: float = 0.02) -> ImpactOscillator:
+def spring(n_modes: int, law: contact.ContactLaw, *, excess: float = 0.02) -> ImpactOscillator:
     """The first modes of a driven spring of 24.5 Hz; the stop 5 mm away."""
     k = np.arange(n_modes)
     omega = 154.0 * (1.0 + 2.0 * k) ** 1.5
@@ -72,7 +59,7 @@ class Case:
 
 def collision(oscillator: ImpactOscillator, periods: float) -> Case:
     """From the lowest point of the steady motion."""
-    return Case(oscillator, before_collision(oscillator), periods * oscillator.period)
+    return Case(oscillator, contact.before_collision(oscillator), periods * oscillator.period)
 
 
 CASES = {
@@ -176,10 +163,15 @@ def test_threads_do_not_share_a_compiled_integrator() -> None:
 
 def test_wrong_use_is_refused() -> None:
     method = OutsideSolver(solver="scipy DOP853", tolerance=1e-10)
-    late = replace(EQUATION_1, stop=Stop(gap=1.0, law=DelayedRestitution(restitution=0.1, delay=1e-4)))
+    late = replace(
+        EQUATION_1, stop=contact.Stop(gap=1.0, law=contact.DelayedRestitution(restitution=0.1, delay=1e-4))
+    )
     with pytest.raises(TypeError):
         simulate(late, periods=1, method=method)
-    for law in (LinearContact(stiffness=3e5, damping=20.0), HuntCrossley(stiffness=1e9, dissipation=0.3)):
+    for law in (
+        LinearContact(stiffness=3e5, damping=20.0),
+        contact.HuntCrossley(stiffness=1e9, dissipation=0.3),
+    ):
         with pytest.raises(TypeError, match="law of the stop"):
             simulate(spring(2, law), periods=1, method=method)
     with pytest.raises(ValueError, match="tolerance"):
@@ -215,7 +207,7 @@ def test_what_cannot_be_followed_gives_no_number(monkeypatch: pytest.MonkeyPatch
     ringing = replace(spring(5, newton(0.3)), drive=None)
     start = State(displacement=np.zeros(5), velocity=np.array([0.3, 0.12, 0.1, 0.05, 0.02]))
     assert 2 in simulate(ringing, start, duration=0.06).impacts.kind
-    with pytest.raises(Chatter):
+    with pytest.raises(contact.Chatter):
         simulate(ringing, start, duration=0.06, method=OutsideSolver(solver="scipy RK45", tolerance=1e-8))
     method = solver("heyoka Taylor", 1e-9)
     monkeypatch.setattr(adapters, "MOST_STEPS", 2)
