@@ -6,18 +6,8 @@ import numpy as np
 import pytest
 from oscillators import modes_on_stop
 
-from contact import (
-    LinearContact,
-    NordmarkMap,
-    State,
-    Stop,
-    StroboscopicMap,
-    before_collision,
-    collisions,
-    first_collision,
-    orbits,
-    simulate,
-)
+import contact
+from contact import LinearContact, NordmarkMap, State, Stop, StroboscopicMap, collisions, orbits, simulate
 from contact.integrators import CentralDifference, Exact, GeneralisedAlpha, Splitting
 
 LOAD, REFUSED = np.array([70.0, -150.0]), "load (is|drives)"
@@ -39,8 +29,8 @@ CALLS = {
     "excess": lambda o, rest: o.excess,
     "drive_at": lambda o, rest: o.drive_at(o.tip(rest) + 0.002, 0.1),
     "steady": lambda o, rest: StroboscopicMap(oscillator=o).steady().displacement - rest,
-    "before_collision": lambda o, rest: before_collision(o).displacement - rest,
-    "first_collision": lambda o, rest: astuple(first_collision(o.with_excess(0.3))),
+    "before_collision": lambda o, rest: contact.before_collision(o).displacement - rest,
+    "first_collision": lambda o, rest: astuple(contact.first_collision(o.with_excess(0.3))),
     "collisions": lambda o, rest: astuple(
         collisions(simulate(o, thrown(rest), periods=4), unfinished="drop")[0]
     ),
@@ -62,9 +52,7 @@ WITHOUT = {
     "cloud": lambda o, rest: orbits.cloud(strobed(o, -0.1), strobed(o, -0.1).steady(), 2, deviation=1e-3),
     "kick": lambda o, rest: orbits.KickFamily(oscillator=o, period=1),
     "shooting": lambda o, rest: orbits.Shooting(oscillator=o, period=1),
-    "changes": lambda o, rest: orbits.motion_derivatives(
-        o, thrown(rest), [orbits.Change(gap=1.0)], periods=1
-    ),
+    "changes": lambda o, rest: orbits.motion_derivatives(o, thrown(rest), [CHANGE], periods=1),
 }
 
 

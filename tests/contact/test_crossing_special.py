@@ -4,18 +4,9 @@ import math
 
 import numpy as np
 import pytest
+import tip_judge
 from oscillators import modes_on_stop, slow
-from tip_judge import (
-    PLANTED,
-    Real,
-    Signal,
-    assert_agrees,
-    judge,
-    random_deviation,
-    random_oscillator,
-    search,
-    with_gap,
-)
+from tip_judge import PLANTED, Real, Signal, judge, random_deviation, random_oscillator, search, with_gap
 
 from contact.flight.crossing import CROSSES, FREE, GRAZES, UNRESOLVED
 from contact.flight.elementary import EPS
@@ -100,7 +91,7 @@ def test_flights_from_the_wall(order, n_modes):
             assert signal(early) < motion.gap
             tops = signal.peaks(duration, above=0.9 * motion.gap)
             verdict = judge(signal, motion.gap, duration, start=early, peaks=tops)
-            told[assert_agrees(result, verdict, motion, un, vn, base)] += 1
+            told[tip_judge.assert_agrees(result, verdict, motion, un, vn, base)] += 1
     assert min(told["free"], told["crosses"]) > 8
 
 

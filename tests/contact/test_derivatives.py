@@ -10,9 +10,10 @@ import mpmath as mp
 import numpy as np
 import pytest
 from letters_spring import FOLDED_GAP, folded_strip
-from oscillators import MODES, equation_1, many_modes, slow
+from oscillators import MODES, equation_1, many_modes, newton, slow
 from random_families import ARRAYS, along, random_change, random_family, wrong_multiplier
-from scipy.optimize import brentq, linear_sum_assignment, newton
+from scipy.optimize import brentq, linear_sum_assignment
+from scipy.optimize import newton as root_near
 from simulated_orbit import DELAYED, EQUATION_1, LAWS, beam, on_stop
 
 import contact
@@ -36,14 +37,8 @@ def of_equation_1(frequency: float) -> list[Change]:
     omega = math.hypot(2 * math.pi / T, MU / 2)
     period = of_modes(1, omega=-((2 * math.pi / T) ** 2) / (T * omega))
     decay = of_modes(1, omega=MU / (4 * omega), decay_rate=1.0)
-    return [
-        Change(model=period),
-        Change(model=decay),
-        Change(law=(1.0, 0.0)),
-        Change(gap=1.0),
-        Change(frequency=1.0),
-        Change(amplitude=1.0),
-    ]
+    others = {"law": (1.0, 0.0), "gap": 1.0, "frequency": 1.0, "amplitude": 1.0}
+    return [Change(model=period), Change(model=decay), *(Change(**{name: x}) for name, x in others.items())]
 
 
 def exact_flow(square: mp.mpf, c: mp.mpf, t: mp.mpf) -> tuple[mp.mpf, mp.mpf, mp.mpf, mp.mpf]:
@@ -66,7 +61,7 @@ def exact_slopes(of: Callable[[list], list[mp.mpf]], point: Sequence[float]) -> 
 @pytest.mark.parametrize("name", [*MODES, "nearly critical"])
 def test_flow_of_a_mode_against_differentiation_in_50_digits(name: str) -> None:
     modes = MODES.get(name, {"omega": [600.0], "decay_rate": [1200.0 - 1e-7]})
-    law, rates = contact.NewtonRestitution(local_restitution=0.0), modes["decay_rate"]
+    law, rates = newton(0.0), modes["decay_rate"]
     table = motion_of(modes["omega"], rates, np.ones(len(rates)), law=law, gap=1.0).modes
     for k, (omega, decay) in enumerate(zip(modes["omega"], rates, strict=True)):
         unit = max(1.0, omega) ** np.array([1, 0, 1, 1])
@@ -114,24 +109,14 @@ def exact_orbit(m: int) -> Callable[[Sequence[float]], list[mp.mpf]]:
         steady = -w * w * (gap - a * v)
         jump = mp.matrix([[-tau, 0], [(tau * (before + steady) + behind + steady) / v, -tau]])
         monodromy = n * jump
-        return [
-            size / gap - 1,
-            time,
-            v,
-            monodromy[0, 0] + monodromy[1, 1],
-            monodromy[0, 0] * monodromy[1, 1] - monodromy[0, 1] * monodromy[1, 0],
-            *points,
-        ]
+        return [size / gap - 1, time, v, monodromy[0, 0] + monodromy[1, 1], mp.det(monodromy), *points]
 
     return orbit
 
 
 @pytest.mark.parametrize(("frequency", "m", "excess"), [(22.2, 5, 4e-3), (20.9, 3, -5e-4), (23.4, 11, 1e-3)])
 def test_orbit_of_equation_1_against_its_closed_form_in_50_digits(frequency, m, excess):
-    oscillator = equation_1(frequency)
-    oscillator = replace(
-        oscillator, stop=contact.Stop(gap=GAP, law=contact.NewtonRestitution(local_restitution=TAU))
-    )
+    oscillator = equation_1(frequency, newton(TAU), gap=GAP)
     node = contact.MaximalFamily(oscillator=oscillator, period=m).orbits(excess)[-1]
     family = Shooting(oscillator=oscillator, period=m)
     orbit = family.at_excess(excess, family.at_speed(node.speed))
@@ -210,11 +195,9 @@ def in_other_units(oscillator: contact.ImpactOscillator) -> list[Change]:
     laws = [(first * a, second * b) for a, b in (time, length, modal)]
     faster = of_modes(n, omega=model.omega, decay_rate=model.decay_rate)
     heavier = of_modes(n, phi=model.phi, participation=-model.participation)
-    return [
-        Change(model=faster, frequency=oscillator.driven.frequency, law=laws[0]),
-        Change(gap=gap, amplitude=amplitude, law=laws[1]),
-        Change(model=heavier, law=laws[2]),
-    ]
+    others = dict(frequency=oscillator.driven.frequency), dict(gap=gap, amplitude=amplitude), {}
+    models = dict(model=faster), {}, dict(model=heavier)
+    return [Change(law=law, **one, **model) for law, one, model in zip(laws, others, models, strict=True)]
 
 
 def every_number(oscillator: contact.ImpactOscillator) -> list[Change]:
@@ -274,15 +257,11 @@ def test_a_simulated_motion_against_differences(name: str) -> None:
     times = np.sort([0.013, 0.1, *(first.start + within)[:2], 0.21])
 
     def observed(step: float) -> list[np.ndarray]:
-        moved = contact.State(
-            displacement=start.displacement + step * kicked[0], velocity=start.velocity + step * kicked[1]
-        )
+        q, v = np.stack([start.displacement, start.velocity]) + step * kicked
+        moved = contact.State(displacement=q, velocity=v)
         run = contact.simulate(along(oscillator, change, step), moved, periods=5, times=times)
-        return [
-            run.impacts.start,
-            np.hstack([run.strobe_displacement, run.strobe_velocity]),
-            np.hstack([run.displacement, run.velocity]),
-        ]
+        pairs = (run.strobe_displacement, run.strobe_velocity), (run.displacement, run.velocity)
+        return [run.impacts.start, *(np.hstack(pair) for pair in pairs)]
 
     found = orbits.motion_derivatives(oscillator, start, [change], periods=5, times=times)
     direction = np.concatenate([kicked.reshape(-1), [1.0]])
@@ -339,7 +318,7 @@ def test_random_multipliers_and_doublings_against_differences(number: int) -> No
             def doubles(x: float) -> float:
                 return float(np.prod(there.at_speed(math.exp(x), doubled).multipliers + 1.0).real)
 
-            x = newton(doubles, x, x1=x + 1e-4, tol=1e-13, maxiter=30)
+            x = root_near(doubles, x, x1=x + 1e-4, tol=1e-13, maxiter=30)
             return np.array([there.at_speed(math.exp(x), doubled).excess])
 
         if not wrong_multiplier("period doubling", doubled):
@@ -395,7 +374,7 @@ def test_where_there_is_no_derivative_a_sentence_says_so() -> None:
     with pytest.raises(contact.NoDerivative, match="fold"):
         orbits.orbit_derivatives(family.at_speed(exact.speed), of_equation_1(22.2))
     # two real multipliers meet between these speeds, and turn complex
-    hard = Shooting(oscillator=equation_1(20.9, contact.NewtonRestitution(local_restitution=0.7)), period=1)
+    hard = Shooting(oscillator=equation_1(20.9, newton(0.7)), period=1)
     unit = hard.oscillator.unit_speed
     meet = brentq(lambda v: float((np.subtract(*hard.at_speed(v).multipliers) ** 2).real), 0.9 * unit, unit)
     with pytest.raises(contact.NoDerivative, match="coincide"):
@@ -405,8 +384,6 @@ def test_where_there_is_no_derivative_a_sentence_says_so() -> None:
     start = contact.State(displacement=steady.imag, velocity=grazing.driven.angular_frequency * steady.real)
     with pytest.raises(contact.NoDerivative, match="grazes"):
         orbits.motion_derivatives(grazing, start, periods=1)
-    wrong = Change(model=of_modes(2, omega=1.0))
-    with pytest.raises(ValueError, match="model"):
-        orbits.orbit_derivatives(family.at_speed(exact.speed), [wrong])
-    with pytest.raises(ValueError, match="law"):
-        orbits.orbit_derivatives(family.at_speed(exact.speed), [Change(law=(0.0, 1.0))])
+    for name, wrong in {"model": of_modes(2, omega=1.0), "law": (0.0, 1.0)}.items():
+        with pytest.raises(ValueError, match=name):
+            orbits.orbit_derivatives(family.at_speed(exact.speed), [Change(**{name: wrong})])

@@ -15,7 +15,7 @@ from oscillators import MODES, apart, equation_1, many_modes
 from simulated_orbit import DELAYED, LAWS, beam, differences, on_stop, settled, sizes, touches
 
 import contact
-from contact.orbits import Family, KickFamily, Shooting
+from contact.orbits import Family, KickFamily, Orbit, Shooting
 
 UNDELAYED = contact.DelayedRestitution(restitution=0.1, delay=0.0)
 PLACES = [(20.90, 3), (21.50, 4), (22.20, 5), (23.40, 11)]
@@ -57,29 +57,30 @@ def quick(name: str) -> bool:
 @pytest.fixture(
     scope="module", params=long(CONTRACT, lambda case: case[0] in ALWAYS or case in ALWAYS), ids=str
 )
-def family(request) -> Family:
-    """Of Eq. (1) in each description, with a touch that waits; of many modes."""
+def found(request) -> tuple[Family, Orbit]:
+    """A family and its fold: of Eq. (1) in each description, with a touch that waits; of many modes."""
     name, at = request.param
-    return MAKERS[name](*OSCILLATORS[at])
+    family = MAKERS[name](*OSCILLATORS[at])
+    return family, family.fold()
 
 
-def test_an_orbit_has_the_speed_it_was_asked_for(family: Family) -> None:
-    fold = family.fold()
+def test_an_orbit_has_the_speed_it_was_asked_for(found: tuple[Family, Orbit]) -> None:
+    family, fold = found
     for part in (0.5, 1.0, 2.0):
         orbit = family.orbit(part * fold.speed)
         assert orbit.speed == pytest.approx(part * fold.speed, rel=1e-12)
         assert orbit.period == family.period == fold.period
 
 
-def test_the_fold_has_the_least_excess_and_a_multiplier_one(family: Family) -> None:
-    fold = family.fold()
+def test_the_fold_has_the_least_excess_and_a_multiplier_one(found: tuple[Family, Orbit]) -> None:
+    family, fold = found
     assert fold.excess < min(family.orbit(part * fold.speed).excess for part in (0.99, 1.01))
     assert fold.admissible
     assert np.min(np.abs(fold.multipliers - 1.0)) < 1e-6
 
 
-def test_above_the_fold_are_a_saddle_and_a_node_and_below_it_nothing(family: Family) -> None:
-    fold = family.fold()
+def test_above_the_fold_are_a_saddle_and_a_node_and_below_it_nothing(found: tuple[Family, Orbit]) -> None:
+    family, fold = found
     assert family.orbits(1.1 * fold.excess) == ()
     saddle, node = family.orbits(0.9 * fold.excess)
     assert saddle.speed < fold.speed < node.speed
@@ -94,8 +95,8 @@ def test_above_the_fold_are_a_saddle_and_a_node_and_below_it_nothing(family: Fam
         )
 
 
-def test_multipliers_fall_in_size_and_tell_stability(family: Family) -> None:
-    fold = family.fold()
+def test_multipliers_fall_in_size_and_tell_stability(found: tuple[Family, Orbit]) -> None:
+    family, fold = found
     for part in (0.1, 0.7, 1.5):
         orbit = family.orbit(part * fold.speed)
         sizes = np.abs(orbit.multipliers)

@@ -7,17 +7,8 @@ import pytest
 
 from contact import MapFamily, maximal_period
 from studies import letter
-from studies.experiment.breakdown.model import (
-    FREQUENCY_HZ,
-    Spring,
-    cell_of,
-    fig_5,
-    island,
-    periods,
-    scanned,
-    single_mode,
-    tuned,
-)
+from studies.experiment.breakdown import model
+from studies.experiment.breakdown.model import FREQUENCY_HZ, Spring, cell_of, fig_5, island, periods, scanned
 from studies.physics.calibration import ACCURACY, calibrate_thickness, strip_decay_rate
 from studies.shell.scene import free_period, model_of, nordmark_at
 
@@ -35,7 +26,7 @@ def calibrated(scene):
 @pytest.fixture(scope="module")
 def light(scene):
     """Ball and damping of the higher modes with which the state born at grazing has period 6."""
-    return Spring(scene=scene, model=tuned(scene, 0.00425), tip_mass_kg=0.00425, higher_damping=1.5)
+    return Spring(scene=scene, model=model.tuned(scene, 0.00425), tip_mass_kg=0.00425, higher_damping=1.5)
 
 
 def test_the_beam_of_fig_5_has_its_period_and_damping_and_keeps_ball_and_gap(scene, letter_scene):
@@ -75,7 +66,7 @@ def test_the_island_of_eq_1_starts_at_the_fold_and_outlives_the_single_impact_p3
 
 
 def test_the_beam_as_calibrated_and_eq_1_are_born_without_a_period(scene, calibrated):
-    for spring in (single_mode(scene, 0.1), calibrated):
+    for spring in (model.single_mode(scene, 0.1), calibrated):
         cell = cell_of(spring)
         assert cell.period == 0 and cell.impacts > 20
 

@@ -113,13 +113,3 @@ def test_gif_and_mp4_hold_every_frame(tmp_path):
     if can_encode():
         assert (tmp_path / "film.mp4").stat().st_size > 500
     assert sorted(path.suffix for path in tmp_path.iterdir()) == [".gif", *([".mp4"] if can_encode() else [])]
-
-
-def test_the_small_form_of_the_motion_writes_a_film_and_meshes(run_study):
-    argv = [f"--set={key}={value}" for key, value in COARSE.items()]
-    ran = run_study("time_trace", "--quick", "--film", "--frames", "8", *argv)
-    assert ran.code == 0 and ran.summary["period"] == 4 and ran.summary["impacts"] >= 1
-    assert len(list((ran.folder / "motion_frames").glob("*.vtu"))) == 8
-    with Image.open(ran.folder / "motion.gif") as found:
-        assert found.n_frames == 8
-    assert {"motion.gif", "motion.pvd"} <= set(ran.manifest["files"])

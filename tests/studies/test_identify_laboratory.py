@@ -6,37 +6,25 @@ import math
 
 import numpy as np
 import pytest
-from record_simulators import draw
+from oscillators import modes_on_stop, newton
+from record_simulators import Beam, draw
 
-from beam import ModalModel
-from contact import HarmonicDrive, ImpactOscillator, LinearContact, NewtonRestitution, Stop
+from contact import ImpactOscillator, LinearContact
 from studies.measurement.identify.fit import fit
 from studies.measurement.identify.records import Record
 
 
-def oscillator_of(kind: str, truth: dict) -> tuple[ImpactOscillator, dict[str, float]]:
+def oscillator_of(lab: Beam) -> tuple[ImpactOscillator, dict[str, float]]:
     """An oscillator to start from, and the true values of what is fitted."""
-    rows = [np.atleast_1d(truth[name]) for name in ("omega_k", "c_k", "phi_k", "Gamma_k")]
-    if kind == "equation_1":
-        rows, law = [[154.0], [3.56], [1.0], [1.0]], NewtonRestitution(local_restitution=0.2)
+    rows, law = (lab.omega, lab.c, lab.phi, lab.gamma), newton(0.2)
+    truth = {name: getattr(lab, name) for name in ("gap", "amplitude", "frequency")}
+    truth |= {"free_period": 2 * math.pi / math.sqrt(lab.omega[0] ** 2 - 0.25 * lab.c[0] ** 2)}
+    truth |= {"decay_rate": lab.c[0]}
+    if lab.stiffness is None:
+        rows, truth["restitution"] = (154.0, 3.56, 1.0, 1.0), lab.restitution
     else:
-        law = LinearContact(stiffness=2.0 * truth["K"])
-    names = ("omega", "decay_rate", "phi", "participation")
-    drive = HarmonicDrive(frequency=truth["frequency"], amplitude=1e-3)
-    model = ModalModel(**dict(zip(names, rows, strict=True)))
-    start = ImpactOscillator(model=model, stop=Stop(gap=0.01, law=law), drive=drive)
-    period = (
-        truth["T"]
-        if kind == "equation_1"
-        else 2 * math.pi / math.sqrt(rows[0][0] ** 2 - 0.25 * rows[1][0] ** 2)
-    )
-    return start, {
-        "free_period": period,
-        "decay_rate": truth["mu"],
-        "gap": truth["gap"],
-        "amplitude": truth["amplitude"],
-        "frequency": truth["frequency"],
-    } | ({"restitution": truth["restitution"]} if kind == "equation_1" else {"stiffness": truth["K"]})
+        law, truth["stiffness"] = LinearContact(stiffness=2.0 * lab.stiffness), lab.stiffness
+    return modes_on_stop(*rows, law=law, drive=(lab.frequency, 1e-3)), truth
 
 
 @pytest.mark.parametrize(
@@ -46,7 +34,7 @@ def oscillator_of(kind: str, truth: dict) -> tuple[ImpactOscillator, dict[str, f
 def test_phase_offset_sign_and_lost_rows_are_no_obstacle(kind: str, seed: int, known: bool) -> None:
     """The reading is turned, shifted by 3 mm and begins at 7 s; one row in ten is lost."""
     record = draw(kind, seed)
-    start, truth = oscillator_of(kind, record.truth)
+    start, truth = oscillator_of(record.beam)
     kept = np.sort(np.random.default_rng(seed).permutation(record.time.size)[: 9 * record.time.size // 10])
     rows = np.column_stack([record.time + 7.0, 3e-3 - record.value])[kept]
     given = truth["frequency"] * 1.001 if known else None
@@ -55,9 +43,8 @@ def test_phase_offset_sign_and_lost_rows_are_no_obstacle(kind: str, seed: int, k
     assert np.all(np.abs(off) < 3.5 * found.errors[: len(truth)]) and not found.too_small
     assert found.noise == pytest.approx(record.noise_sd, rel=0.15)
     sensor = dict(zip(found.names, found.estimate, strict=True))
-    turn = (
-        0.5 * math.pi - 2.0 * math.pi * sensor["frequency"] * 7.0 - sensor["phase"]
-    )  # a cosine, from 7 s on
+    # a cosine, from 7 s on
+    turn = 0.5 * math.pi - 2.0 * math.pi * sensor["frequency"] * 7.0 - sensor["phase"]
     assert abs(math.remainder(turn, 2.0 * math.pi)) < 0.05
     assert sensor["offset"] == pytest.approx(3e-3, abs=4.0 * found.errors[found.names.index("offset")])
     low, high = found.intervals().T

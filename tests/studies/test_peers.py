@@ -8,25 +8,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
+from oscillators import equation_1, modes_on_stop, newton
 
-from beam import ModalModel, single_mode
-from contact import (
-    Chatter,
-    ContactError,
-    ContactLaw,
-    DelayedRestitution,
-    HarmonicDrive,
-    HertzContact,
-    HuntCrossley,
-    ImpactOscillator,
-    LinearContact,
-    NewtonRestitution,
-    State,
-    Stop,
-    Trajectory,
-    before_collision,
-    simulate,
-)
+import contact
+from contact import ContactError, HertzContact, ImpactOscillator, LinearContact, State, Trajectory, simulate
 from contact.integrators import Integrator
 from studies.methods import peers
 from studies.methods.peers import SOLVERS, OutsideSolver, adapters, installed_solvers, missing_solvers
@@ -48,24 +33,15 @@ def solver(label: str, tolerance: float) -> Integrator:
     return OutsideSolver(solver=label, tolerance=tolerance)
 
 
-def spring(n_modes: int, law: ContactLaw, *, excess: float = 0.02) -> ImpactOscillator:
+def spring(n_modes: int, law: contact.ContactLaw, *, excess: float = 0.02) -> ImpactOscillator:
     """The first modes of a driven spring of 24.5 Hz; the stop 5 mm away."""
     k = np.arange(n_modes)
     omega = 154.0 * (1.0 + 2.0 * k) ** 1.5
-    model = ModalModel(
-        omega=omega, decay_rate=0.02 * omega, phi=10.0 / (1.0 + 0.4 * k), participation=0.09 / (1.0 + k)
-    )
-    stop = Stop(gap=0.005, law=law)
-    return ImpactOscillator(model=model, stop=stop, drive=HarmonicDrive(frequency=22.2)).with_excess(excess)
+    shapes = 10.0 / (1.0 + 0.4 * k), 0.09 / (1.0 + k)
+    return modes_on_stop(omega, 0.02 * omega, *shapes, law=law, gap=0.005, drive=22.2).with_excess(excess)
 
 
-def equation_1(excess: float = 0.2) -> ImpactOscillator:
-    """Eq. (1) with the stop 1 m away."""
-    return ImpactOscillator(
-        model=single_mode(free_period=0.0408, decay_rate=3.56),
-        stop=Stop(gap=1.0, law=NewtonRestitution(local_restitution=0.1)),
-        drive=HarmonicDrive(frequency=22.2),
-    ).with_excess(excess)
+EQUATION_1 = equation_1(22.2, excess=0.2)
 
 
 @dataclass(frozen=True)
@@ -83,11 +59,11 @@ class Case:
 
 def collision(oscillator: ImpactOscillator, periods: float) -> Case:
     """From the lowest point of the steady motion."""
-    return Case(oscillator, before_collision(oscillator), periods * oscillator.period)
+    return Case(oscillator, contact.before_collision(oscillator), periods * oscillator.period)
 
 
 CASES = {
-    "hard wall, Eq. (1)": collision(equation_1(), 6.3),
+    "hard wall, Eq. (1)": collision(EQUATION_1, 6.3),
     "linear, 4 modes": collision(spring(4, LinearContact(stiffness=3e5)), 1.2),
     "Hertz, 4 modes": collision(spring(4, HertzContact(stiffness=1e9)), 1.2),
 }
@@ -117,22 +93,15 @@ def test_meets_its_tolerance_with_the_same_touches(label: str, name: str) -> Non
     run = case.follow(solver(label, tolerance))
     assert distance(run, exact, case.oscillator) < within
     np.testing.assert_array_equal(run.strobe_impacts, exact.strobe_impacts)
+    largest = np.abs(exact.displacement).max()
     np.testing.assert_allclose(
-        run.strobe_displacement,
-        exact.strobe_displacement,
-        rtol=0,
-        atol=within * np.abs(exact.displacement).max(),
+        run.strobe_displacement, exact.strobe_displacement, rtol=0, atol=within * largest
     )
     fastest = 2 * math.pi / case.oscillator.model.omega.max()
     speed = np.abs(exact.impacts.approach).max()
     lost = 0.5 * speed**2 / float(case.oscillator.model.phi @ case.oscillator.model.phi)
-    for part, room in (
-        ("start", 30 * fastest),
-        ("end", 30 * fastest),
-        ("approach", 100 * speed),
-        ("rebound", 100 * speed),
-        ("loss", 300 * lost),
-    ):
+    times, speeds = dict.fromkeys(("start", "end"), 30 * fastest), ("approach", "rebound")
+    for part, room in (times | dict.fromkeys(speeds, 100 * speed) | {"loss": 300 * lost}).items():
         found, truth = getattr(run.impacts, part), getattr(exact.impacts, part)
         np.testing.assert_allclose(found, truth, rtol=0, atol=room * within)
     assert run.end.time == exact.end.time and run.evaluations > 50
@@ -193,12 +162,18 @@ def test_threads_do_not_share_a_compiled_integrator() -> None:
 
 
 def test_wrong_use_is_refused() -> None:
-    late = replace(equation_1(), stop=Stop(gap=1.0, law=DelayedRestitution(restitution=0.1, delay=1e-4)))
+    method = OutsideSolver(solver="scipy DOP853", tolerance=1e-10)
+    late = replace(
+        EQUATION_1, stop=contact.Stop(gap=1.0, law=contact.DelayedRestitution(restitution=0.1, delay=1e-4))
+    )
     with pytest.raises(TypeError):
-        simulate(late, periods=1, method=OutsideSolver(solver="scipy DOP853", tolerance=1e-10))
-    for law in (LinearContact(stiffness=3e5, damping=20.0), HuntCrossley(stiffness=1e9, dissipation=0.3)):
+        simulate(late, periods=1, method=method)
+    for law in (
+        LinearContact(stiffness=3e5, damping=20.0),
+        contact.HuntCrossley(stiffness=1e9, dissipation=0.3),
+    ):
         with pytest.raises(TypeError, match="law of the stop"):
-            simulate(spring(2, law), periods=1, method=OutsideSolver(solver="scipy DOP853", tolerance=1e-10))
+            simulate(spring(2, law), periods=1, method=method)
     with pytest.raises(ValueError, match="tolerance"):
         OutsideSolver(solver="scipy RK45", tolerance=1e-15)
     with pytest.raises(ValueError, match="solver"):
@@ -206,9 +181,7 @@ def test_wrong_use_is_refused() -> None:
     inside = State(displacement=[1.0], velocity=[0.0], regime=3)
     for state in (State(displacement=[1.1], velocity=[0.0]), inside):
         with pytest.raises(ValueError, match="regime of the state"):
-            simulate(
-                equation_1(), state, periods=1, method=OutsideSolver(solver="scipy DOP853", tolerance=1e-10)
-            )
+            simulate(EQUATION_1, state, periods=1, method=method)
 
 
 @pytest.mark.parametrize("label", [label for label in SOLVERS if label != "heyoka Taylor"])
@@ -231,10 +204,10 @@ def test_a_solver_that_gives_up_gives_no_number(label: str, monkeypatch: pytest.
 
 def test_what_cannot_be_followed_gives_no_number(monkeypatch: pytest.MonkeyPatch) -> None:
     """Impacts that accumulate to a stay on the stop, and a series of too many steps."""
-    ringing = replace(spring(5, NewtonRestitution(local_restitution=0.3)), drive=None)
+    ringing = replace(spring(5, newton(0.3)), drive=None)
     start = State(displacement=np.zeros(5), velocity=np.array([0.3, 0.12, 0.1, 0.05, 0.02]))
     assert 2 in simulate(ringing, start, duration=0.06).impacts.kind
-    with pytest.raises(Chatter):
+    with pytest.raises(contact.Chatter):
         simulate(ringing, start, duration=0.06, method=OutsideSolver(solver="scipy RK45", tolerance=1e-8))
     method = solver("heyoka Taylor", 1e-9)
     monkeypatch.setattr(adapters, "MOST_STEPS", 2)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from PIL import Image
 
 from contact import first_collision
 from contact.collision import before_collision
@@ -11,8 +12,9 @@ from studies.experiment.time_trace.model import close_up
 from studies.shell.scene import beam_at, single_mode_of
 
 
-def test_the_orbit_of_figure_4_and_the_ringing_of_its_impact(run_study):
-    ran = run_study("time_trace", "--quick", "--set", "readout.arc_fraction=1.0")  # at the ball
+def test_the_orbit_of_figure_4_the_ringing_of_its_impact_and_its_film(run_study):
+    at_the_ball = "--set", "readout.arc_fraction=1.0"
+    ran = run_study("time_trace", "--quick", *at_the_ball, "--film", "--frames", "8")
     summary = ran.summary
     assert (ran.code, summary["period"], summary["impacts"]) == (0, 4, 1)
     times = summary["impact_times_s"]
@@ -31,6 +33,10 @@ def test_the_orbit_of_figure_4_and_the_ringing_of_its_impact(run_study):
     # the second orbit period repeats the first: a settled orbit, and a spectrum without leakage
     assert np.max(np.abs(readout[half:] - readout[:half])) < 1e-8 * np.max(np.abs(readout))
     assert {summary["verdicts"][point]["verdict"] for point in ("time_trace", "many_modes")} == {"agrees"}
+    assert len(list((ran.folder / "motion_frames").glob("*.vtu"))) == 8
+    with Image.open(ran.folder / "motion.gif") as found:
+        assert found.n_frames == 8
+    assert {"motion.gif", "motion.pvd"} <= set(ran.manifest["files"])
 
 
 def test_below_grazing_there_is_no_impact_and_one_line(run_study, letter_scene):

@@ -11,18 +11,10 @@ from studies.experiment.transitions.model import rows_at
 from studies.letter import PERIODS
 from studies.physics.descriptions import TITLES, strobed_at
 from studies.shell.scene import beam_at, model_of, read_scene
+from studies.shell.scene.keys import MODE_LISTS
 
 EXPECTED = {20.90: 3, 21.50: 4, 22.20: 5, 22.60: 6, 23.05: 8, 23.40: 11}
 """m of the map, of Eq. (1) and of the beam; the letter saw 10 at the last."""
-
-
-FEW = ("--set", "scan.points=9")
-"""Amplitudes of a scan."""
-
-
-def row_of(name, scene, frequency, model):
-    """The row of one description."""
-    return next(row for row in rows_at(scene, frequency, model).rows if row.description == name)
 
 
 @pytest.mark.parametrize("frequency", sorted(PERIODS))
@@ -34,7 +26,7 @@ def test_all_descriptions_give_the_expected_period(letter_scene, letter_model, f
 
 @pytest.mark.filterwarnings("ignore::beam.SuspiciousValue")
 def test_no_period_of_the_letter_stands_beside_another_spring():
-    scene = read_scene("steel_ruler")
+    scene = read_scene("steel_ruler", ["modes.count=2", "scan.settle_cycles=1"])
     assert [row.letter for row in rows_at(scene, 22.2, model_of(scene)).rows] == [None] * 4
 
 
@@ -78,13 +70,16 @@ def test_the_beams_p8_ends_where_another_touch_grazes(letter_scene, letter_model
     assert seen == {2e-6: (8, 1), 1.39e-6: (8, 1), 1.37e-6: (8, 2), 1e-6: (1, 1), 3e-7: (1, 1), 1e-7: (1, 1)}
 
 
-def test_the_small_form_of_one_frequency(run_study):
-    ran = run_study("transitions", "--quick", "--json", *FEW, "--set", "drive.frequencies_hz=[22.2]")
+def test_the_small_form_of_one_frequency_and_own_modes_that_give_the_same_orbit(run_study):
+    """The second spring is given by the modes of the first, as if they were measured."""
+    given = "scan.points=9", "drive.frequencies_hz=[22.2]"
+    ran = run_study("transitions", "--quick", "--json", *(f"--set={key}" for key in given))
     assert ran.code == 0 and json.loads(ran.out)["rows"] == ran.summary["rows"]
     rows = {row["description"]: row for row in ran.summary["rows"]}
     assert list(rows) == list(TITLES) == [row["description"] for row in ran.rows("transitions")]
     scene = read_scene("letter", ["modes.count=10"])
-    fold = fold_of(Shooting(oscillator=beam_at(scene, 22.2, model_of(scene)), period=5))
+    model = model_of(scene)
+    fold = fold_of(Shooting(oscillator=beam_at(scene, 22.2, model), period=5))
     assert rows["beam"]["end_speed"] == pytest.approx(abs(fold.speed), rel=1e-4)
     assert {(row["letter"], row["period"]) for row in rows.values()} == {(5, 5)}
     assert rows["map"]["exact"] == pytest.approx(rows["map"]["excess_down"], rel=1e-9)
@@ -94,25 +89,10 @@ def test_the_small_form_of_one_frequency(run_study):
     arrays = ran.arrays("orbit_diagram")
     assert len(arrays) == 4 * 2 * 4 and arrays["beam_22p20_hz_up_points"].shape == (9, 40)
     assert set(arrays["beam_22p20_hz_down_period"]) <= {0, 1, 5}
-
-
-def test_own_modes_from_a_scene_go_through_everything(letter_scene, letter_model, run_study):
-    """A spring given by its measured modes: the same numbers as the letter's spring give the same orbit."""
-    given = {
-        "frequencies_hz": letter_model.frequencies_hz,
-        "decay_rates_per_s": letter_model.decay_rate,
-        "tip_values": letter_model.phi,
-        "participation": letter_model.participation,
-    }
-    argv = [f"modal_data.{key}={values.tolist()}" for key, values in given.items()]
-    argv += [
-        "spring.kind=modal_data",
-        f"modes.count={letter_model.n_modes}",
-        "drive.frequencies_hz=[22.2]",
-        f"modal_data.tip_mass_kg={letter_scene.tip.mass_kg}",
-    ]
-    ran = run_study("transitions", "--quick", *FEW, *(word for key in argv for word in ("--set", key)))
+    lists = (model.frequencies_hz, model.decay_rate, model.phi, model.participation)
+    given += tuple(f"modal_data.{key}={one.tolist()}" for key, one in zip(MODE_LISTS, lists, strict=True))
+    given += "spring.kind=modal_data", "modes.count=10", f"modal_data.tip_mass_kg={scene.tip.mass_kg}"
+    ran = run_study("transitions", "--quick", *(f"--set={key}" for key in given))
     *_, row = ran.summary["rows"]
     assert ran.code == 0 and (row["description"], row["period"]) == ("beam", 5)
-    same = row_of("beam", letter_scene, 22.2, letter_model)
-    assert row["excess_down"] == pytest.approx(same.excess_down, rel=1e-9)
+    assert row["excess_down"] == pytest.approx(rows["beam"]["excess_down"], rel=1e-9)

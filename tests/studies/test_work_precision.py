@@ -7,23 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from oscillators import modes_on_stop, newton
 
-from beam import ModalModel
-from contact import (
-    ContactLaw,
-    HarmonicDrive,
-    HertzContact,
-    HuntCrossley,
-    ImpactOscillator,
-    LinearContact,
-    NewtonRestitution,
-    State,
-    Stop,
-    StroboscopicMap,
-    before_collision,
-    first_collision,
-    simulate,
-)
+import contact
+from contact import ContactLaw, HertzContact, LinearContact, Stop, before_collision, first_collision, simulate
 from contact.integrators import CentralDifference, Exact
 from studies.methods.peers import missing_solvers
 from studies.methods.work_precision import gradients
@@ -43,21 +30,16 @@ FEW_MODES = SCENE.replace({"modes.count": 4})
 # -------------------------------------------------------------------------------------------- the reference
 
 
-def leaf(law: ContactLaw, excess: float = 0.013) -> ImpactOscillator:
+def leaf(law: ContactLaw, excess: float = 0.013) -> contact.ImpactOscillator:
     """Three modes near those of the letter's spring."""
-    model = ModalModel(
-        omega=2 * np.pi * np.array([24.5, 152.0, 390.0]),
-        decay_rate=np.array([3.56, 21.0, 55.0]),
-        phi=np.array([8.1, 4.7, 3.6]),
-        participation=np.array([0.1, 0.03, 0.02]),
-    )
-    stop, drive = Stop(gap=0.0107, law=law), HarmonicDrive(frequency=21.5)
-    return ImpactOscillator(model=model, stop=stop, drive=drive).with_excess(excess)
+    omega, decay = 2 * np.pi * np.array([24.5, 152.0, 390.0]), [3.56, 21.0, 55.0]
+    shapes = [8.1, 4.7, 3.6], [0.1, 0.03, 0.02]
+    return modes_on_stop(omega, decay, *shapes, law=law, gap=0.0107, drive=21.5).with_excess(excess)
 
 
 @pytest.mark.parametrize(
     "law",
-    [NewtonRestitution(local_restitution=0.1), LinearContact(stiffness=2e5), HertzContact(stiffness=1e8)],
+    [newton(0.1), LinearContact(stiffness=2e5), HertzContact(stiffness=1e8)],
     ids=["newton", "linear", "hertz"],
 )
 def test_the_exact_method_agrees_with_the_reference(law: ContactLaw) -> None:
@@ -77,7 +59,10 @@ def test_the_exact_method_agrees_with_the_reference(law: ContactLaw) -> None:
 
 
 def test_what_the_reference_cannot_follow_is_refused() -> None:
-    for law in (HuntCrossley(stiffness=1e8, dissipation=0.5), LinearContact(stiffness=1e5, damping=1.0)):
+    for law in (
+        contact.HuntCrossley(stiffness=1e8, dissipation=0.5),
+        LinearContact(stiffness=1e5, damping=1.0),
+    ):
         with pytest.raises(ValueError, match="law of the stop"):
             extended_motion(leaf(law), before_collision(leaf(law)), 0.1)
     deep = leaf(HertzContact(stiffness=1e8))
@@ -94,29 +79,17 @@ def thrown() -> Reference:
     """Three modes that touch where the run begins, on the grid: nothing scatters about the stated order."""
     driven = leaf(LinearContact(stiffness=45000.0))
     oscillator = replace(driven, drive=None, stop=replace(driven.stop, gap=0.0))
-    start = State(displacement=np.zeros(3), velocity=np.array([0.4, 0.0, 0.0]))
-    contact = float(simulate(oscillator, start, duration=0.02).impacts.end[0])
+    start = contact.State(displacement=np.zeros(3), velocity=np.array([0.4, 0.0, 0.0]))
+    touch = float(simulate(oscillator, start, duration=0.02).impacts.end[0])
+    size, times = 0.005 / oscillator.model.phi[0], ("probe", "duration", "period")
+    motion = dict(oscillator=oscillator, start=start, size=size, speed=0.4)
+    costs = dict(cost_start=start, cost_periods=1, contact_time=touch)
     return reference_of(
-        Problem(
-            name="thrown",
-            title="",
-            oscillator=oscillator,
-            start=start,
-            probe=1.5 * contact,
-            duration=1.5 * contact,
-            period=1.5 * contact,
-            size=0.005 / oscillator.model.phi[0],
-            speed=0.4,
-            cost_start=start,
-            cost_periods=1,
-            contact_time=contact,
-        )
+        Problem(name="thrown", title="", **motion, **dict.fromkeys(times, 1.5 * touch), **costs)
     )
 
 
-@pytest.mark.parametrize(
-    "label", [label for label in STEPS_OF if "Jean" not in label and "nonsm" not in label]
-)
+@pytest.mark.parametrize("label", [one for one in STEPS_OF if "Jean" not in one and "nonsm" not in one])
 def test_errors_fall_with_the_square_of_the_step(label: str) -> None:
     """The order of smooth motion, but for the release between two grid points, which leaves h^2."""
     reference = thrown()
@@ -187,7 +160,7 @@ def test_runs_are_timed_in_turns() -> None:
 def test_bare_heyoka_is_on_the_same_orbit(letter_scene) -> None:
     """It reaches the p5 of the package: it is a peer, not a straw man."""
     oscillator = single_mode_at(letter_scene, 22.2).with_excess(0.02)
-    strobed = StroboscopicMap(oscillator=oscillator)
+    strobed = contact.StroboscopicMap(oscillator=oscillator)
     settled = strobed.orbit(strobed.steady(), 2000).end
     cycle = strobed.tip(strobed.orbit(settled, 5).points)
     orbit, taylor = heyoka_orbit(oscillator)
