@@ -8,19 +8,36 @@ from oscillators import modes_on_stop
 
 import contact
 from contact import LinearContact, NordmarkMap, State, Stop, StroboscopicMap, collisions, orbits, simulate
-from contact.integrators import CentralDifference, Exact, GeneralisedAlpha, Splitting
+from contact.integrators import (
+    CentralDifference,
+    Exact,
+    GeneralisedAlpha,
+    MoreauJean,
+    NonsmoothGeneralisedAlpha,
+    SampledFlight,
+    Splitting,
+)
 
 LOAD, REFUSED = np.array([70.0, -150.0]), "load (is|drives)"
 CHANGE = orbits.Change(gap=1.0)
 METHODS = [Exact(), *(kind(step=1e-5) for kind in (CentralDifference, GeneralisedAlpha, Splitting))]
+HARD = [SampledFlight(points=500), MoreauJean(step=1e-5), NonsmoothGeneralisedAlpha(step=1e-5, rho=0.8)]
 
 
 def strobed(o, excess=0.02):
     return StroboscopicMap(oscillator=o.with_excess(excess))
 
 
+def hard(o):
+    return replace(o, stop=Stop(gap=o.stop.gap, law=contact.NewtonRestitution(local_restitution=0.5)))
+
+
 def thrown(rest):
     return State(displacement=rest, velocity=np.full(2, 0.3))
+
+
+def followed(o, rest, method):
+    return simulate(o, thrown(rest), periods=2, method=method).end.displacement - rest
 
 
 # each call takes an oscillator and its rest position
@@ -40,16 +57,30 @@ CALLS = {
     "settle": lambda o, rest: (
         orbits.settle(strobed(o, -0.1), strobed(o, -0.1).steady(), most_cycles=64).end.displacement - rest
     ),
+    "born": lambda o, rest: orbits.born(strobed(o), 1e-3, most_cycles=200).end.displacement - rest,
+    "exponents": lambda o, rest: orbits.map_exponents(strobed(o), thrown(rest), 20)[0].values,
+    "diagram": lambda o, rest: (
+        orbits.orbit_diagram(
+            strobed(o),
+            [-0.2, -0.1],
+            strobed(o, -0.2).steady(),
+            observe=lambda points: points,
+            settle_cycles=9,
+        ).end.displacement
+        - rest
+    ),
     "scan": lambda o, rest: orbits.AmplitudeScan(oscillator=o, most_cycles=128)(20.0, [-0.2, -0.1]).period,
 }
 FOLLOWED = {
-    **{m.name: lambda o, rest, m=m: simulate(o, thrown(rest), periods=2, method=m).end.displacement - rest
-       for m in METHODS},
+    **{m.name: lambda o, rest, m=m: followed(o, rest, m) for m in METHODS},
+    **{m.name: lambda o, rest, m=m: followed(hard(o), rest, m) for m in HARD},
     "nordmark": lambda o, rest: NordmarkMap.from_oscillator(o, restitution=0.5).alpha,
     "no changes": lambda o, rest: orbits.motion_derivatives(o, thrown(rest), [], periods=2).strobes,
-}  # fmt: skip
+}
 WITHOUT = {
     "cloud": lambda o, rest: orbits.cloud(strobed(o, -0.1), strobed(o, -0.1).steady(), 2, deviation=1e-3),
+    "derivatives": lambda o, rest: orbits.strobe_derivatives(strobed(o, -0.1), strobed(o, -0.1).steady(), 2),
+    "fold": lambda o, rest: orbits.fold_excess(strobed(o), 3),
     "kick": lambda o, rest: orbits.KickFamily(oscillator=o, period=1),
     "shooting": lambda o, rest: orbits.Shooting(oscillator=o, period=1),
     "changes": lambda o, rest: orbits.motion_derivatives(o, thrown(rest), [CHANGE], periods=1),
