@@ -97,29 +97,17 @@ def test_tip_inside_a_strip() -> None:
 
 def test_strip_cut_into_pieces_is_the_same_strip() -> None:
     whole = natural_modes(assemble(cantilever(length=LENGTH, section=STRIP, tip=HEAVY), 30), 10)
-    cut = cantilever(
-        length=LENGTH,
-        section=STRIP,
-        tip=HEAVY,
-        damped_section=STRIP,
-        damped_span=(0.2 * LENGTH, 0.6 * LENGTH),
-    )
+    damped = dict(damped_section=STRIP, damped_span=(0.2 * LENGTH, 0.6 * LENGTH))
+    cut = cantilever(length=LENGTH, section=STRIP, tip=HEAVY, **damped)
     parts = natural_modes(assemble(cut, [6, 12, 12]), 10)
     np.testing.assert_allclose(parts.omega, whole.omega, rtol=1e-7)
     np.testing.assert_allclose(parts.phi, whole.phi, rtol=1e-6)
 
 
 def test_readouts() -> None:
-    spring = cantilever(
-        length=LENGTH,
-        section=STRIP,
-        tip=HEAVY,
-        readouts={
-            "tip": beam.Readout(at=LENGTH),
-            "middle": beam.Readout(at=0.5123 * LENGTH),
-            "laser": beam.Readout(at=0.7 * LENGTH, quantity="rotation"),
-        },
-    )
+    readouts = {"tip": beam.Readout(at=LENGTH), "middle": beam.Readout(at=0.5123 * LENGTH)}
+    readouts["laser"] = beam.Readout(at=0.7 * LENGTH, quantity="rotation")
+    spring = cantilever(length=LENGTH, section=STRIP, tip=HEAVY, readouts=readouts)
     modes, exact = natural_modes(assemble(spring), 6), exact_modes(uniform_beam(STRIP, LENGTH, HEAVY), 6)
     np.testing.assert_allclose(modes.readouts["tip"], modes.phi, rtol=1e-12)
     middle, laser = exact.shapes(0.5123 * LENGTH)[:, 0], exact.shapes(0.7 * LENGTH, derivative=1)[:, 0]

@@ -140,15 +140,10 @@ def test_minimum_of_the_outgoing_motion_ends_a_collision(before_minimum: float) 
     hit, none = real.impacts, np.zeros(2)
     before = hit.displacement_start[0], hit.velocity_start[0]
     after = hit.displacement_end[0], hit.velocity_end[0]
-    touches = Impacts.of_states(
-        oscillator,
-        times=np.array([[hit.start[0], second], [hit.end[0], second]]),
-        states=np.array([[before, state], [after, state]]),
-        approach=none,
-        rebound=none,
-        loss=none,
-        kind=none.astype(int),
-    )
+    times = np.array([[hit.start[0], second], [hit.end[0], second]])
+    states = np.array([[before, state], [after, state]])
+    numbers = dict(approach=none, rebound=none, loss=none, kind=none.astype(int))
+    touches = Impacts.of_states(oscillator, times=times, states=states, **numbers)
     found = collisions(dataclasses.replace(real, impacts=touches), unfinished="drop")
     assert [c.impacts for c in found] == ([2] if before_minimum > 0 else [1, 1])
     assert found[0].kick == pytest.approx(1.5, rel=1e-12)

@@ -64,7 +64,7 @@ CALLS = {
             strobed(o),
             [-0.2, -0.1],
             strobed(o, -0.2).steady(),
-            observe=lambda points: points,
+            observe=lambda points: points[:, 1],
             settle_cycles=9,
         ).end.displacement
         - rest

@@ -97,15 +97,9 @@ def integrate(oscillator: ImpactOscillator, state: State, times: np.ndarray, *, 
         dt = min(1e-6 / omega.max() if omega.max() > 0 else 1e-6, 0.5 * (end - t))
         settings = dict(args=(regime,), method="DOP853", rtol=3e-14, atol=1e-18)
         first = solve_ivp(right, (t, t + dt), y, **settings)
-        rest = solve_ivp(
-            right,
-            (t + dt, end),
-            first.y[:, -1],
-            events=events,
-            dense_output=True,
-            max_step=1.0 / max(omega.max(), 2.0 * math.pi / oscillator.period, 1.0),
-            **settings,
-        )
+        settings["max_step"] = 1.0 / max(omega.max(), 2.0 * math.pi / oscillator.period, 1.0)
+        settings |= dict(events=events, dense_output=True)
+        rest = solve_ivp(right, (t + dt, end), first.y[:, -1], **settings)
         inside = (times >= t) & (times <= rest.t[-1])
         for i in np.flatnonzero(inside):
             at = rest.sol(max(times[i], t + dt)) if times[i] > t else y

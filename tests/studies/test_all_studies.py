@@ -35,7 +35,7 @@ def run_all(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(every_study, "studies", lambda: ["time_trace", "breakdown"])
 
     def run(*argv: str) -> tuple[dict, str]:
-        scene = ["--set", "single_mode.free_period_s=0.06"]
+        scene = ["--set", "single_mode.free_period_s=0.06", "--set", "modes.count=2"]
         code = every_study.main(["--all", "--json", "--quick", *scene, "--out", str(tmp_path), *argv])
         out, err = capsys.readouterr()
         answer = json.loads(out)

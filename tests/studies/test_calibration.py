@@ -8,27 +8,10 @@ import numpy as np
 import pytest
 
 from beam import StripDamping
-from studies.physics.calibration import (
-    ACCURACY,
-    Targets,
-    calibrate,
-    calibrate_all,
-    calibrate_damping,
-    calibrate_thickness,
-    solve_for,
-    strip_decay_rate,
-)
-from studies.shell.scene import (
-    READOUT,
-    SceneError,
-    damping_of,
-    free_period,
-    model_of,
-    modes_of,
-    read_scene,
-    single_mode_of,
-    spring_of,
-)
+from studies.physics import calibration
+from studies.physics.calibration import ACCURACY, Targets, calibrate, calibrate_damping, calibrate_thickness
+from studies.shell import scene as scenes
+from studies.shell.scene import READOUT, SceneError, damping_of, free_period, model_of, modes_of, read_scene
 
 LETTER, FOLDED = read_scene("letter"), read_scene("tight_fold")
 PERIOD, RATE = 40.80e-3, 3.56
@@ -39,7 +22,7 @@ COARSE = {"spring.elements_per_leg": 12, "spring.elements_on_arc": 12, "modes.co
 def test_the_letters_scene_is_calibrated_to_the_digits_it_is_written_with():
     """Thickness and loss factor have eight digits; the period goes with a power of the thickness near -1."""
     assert free_period(LETTER) == pytest.approx(PERIOD, rel=1e-7)
-    assert strip_decay_rate(LETTER) == pytest.approx(RATE, rel=1e-7)
+    assert calibration.strip_decay_rate(LETTER) == pytest.approx(RATE, rel=1e-7)
     fitted = calibrate(LETTER, free_period_s=PERIOD, decay_rate_per_s=RATE)
     for key in ("spring.thickness_m", "spring.tape_loss_factor"):
         assert LETTER[key] == pytest.approx(fitted[key], rel=1e-7)
@@ -52,7 +35,7 @@ def test_the_model_has_the_period_and_the_decay_that_were_measured():
     damped = math.sqrt(model.omega[0] ** 2 - (0.5 * model.decay_rate[0]) ** 2)
     assert abs(2.0 * math.pi / damped / 41.2e-3 - 1.0) <= ACCURACY
     assert abs(model.decay_rate[0] / 4.0 - 1.0) <= ACCURACY
-    assert abs(strip_decay_rate(scene) / 4.0 - 1.0) <= ACCURACY
+    assert abs(calibration.strip_decay_rate(scene) / 4.0 - 1.0) <= ACCURACY
     undamped = abs(2.0 * math.pi / model.omega[0] / 41.2e-3 - 1.0)
     assert undamped > 100.0 * ACCURACY  # the damped and the undamped period are told apart
 
@@ -62,7 +45,7 @@ def test_without_scaling_the_modes_decay_as_the_strain_energies_say():
     modes = modes_of(LETTER)
     scaled, bare = damping_of(LETTER).decay_rates(modes), StripDamping().decay_rates(modes)
     np.testing.assert_allclose(scaled, bare, rtol=1e-6)
-    assert strip_decay_rate(LETTER) == pytest.approx(bare[0], rel=1e-6)
+    assert calibration.strip_decay_rate(LETTER) == pytest.approx(bare[0], rel=1e-6)
 
 
 @pytest.mark.parametrize(
@@ -88,7 +71,7 @@ def test_other_kinds_of_damping_are_scaled_as_a_whole(changes):
         (lambda scene: calibrate_thickness(scene, 1e-5), ["spring.thickness_m", "free period", "1e-05 s"]),
         (lambda scene: calibrate_thickness(scene, math.nan), ["free period", "finite"]),
         (
-            lambda scene: calibrate_all(scene.replace({"tip.mass_kg": 0.0}), Targets.of(scene)),
+            lambda scene: calibration.calibrate_all(scene.replace({"tip.mass_kg": 0.0}), Targets.of(scene)),
             ["tip.mass_kg is 0.0 kg", "above zero"],
         ),
         (lambda scene: calibrate_damping(scene, 1e3), ["spring.tape_loss_factor", "1000 1/s"]),
@@ -117,14 +100,9 @@ def test_the_gap_is_fitted_at_the_middle_drive_frequency_of_the_scene():
 
 def test_a_jump_is_no_solution():
     with pytest.raises(SceneError, match="jumps across"):
-        solve_for(
-            "stop.gap_m",
-            LETTER,
-            lambda scene: 1.0 if scene.stop.gap_m < 0.01 else 3.0,
-            2.0,
-            name="step",
-            unit="m",
-            between=(1e-3, 0.1),
+        said = dict(name="step", unit="m", between=(1e-3, 0.1))
+        calibration.solve_for(
+            "stop.gap_m", LETTER, lambda one: 3.0 - 2.0 * (one.stop.gap_m < 0.01), 2.0, **said
         )
 
 
@@ -154,8 +132,8 @@ def test_every_kind_of_spring_makes_a_model_with_a_readout():
     np.testing.assert_allclose(model.frequencies_hz, [24.5, 150.0])
     np.testing.assert_array_equal(model.readouts[READOUT], [8.0, 5.0])
     with pytest.raises(SceneError, match="without their shapes"):
-        spring_of(measured)
-    single = single_mode_of(LETTER)
+        scenes.spring_of(measured)
+    single = scenes.single_mode_of(LETTER)
     assert single.readouts[READOUT].tolist() == [1.0] == single.phi.tolist()
 
 
@@ -163,16 +141,8 @@ def test_the_readout_sees_the_ball_where_the_ball_is_and_rotation_where_it_is_as
     for scene, place in ((LETTER, 1.0), (FOLDED, 0.5)):
         at_ball = model_of(scene.replace({**COARSE, "readout.arc_fraction": place}))
         np.testing.assert_allclose(at_ball.readouts[READOUT], at_ball.phi, rtol=1e-9)
-    tilted = LETTER.replace(
-        {
-            **COARSE,
-            "spring.kind": "cantilever",
-            "readout.arc_fraction": 1.0,
-            "readout.quantity": "rotation",
-            "tip.mass_kg": 0.0,
-        }
-    )
-    model = model_of(tilted)
+    turn = {"readout.arc_fraction": 1.0, "readout.quantity": "rotation"}
+    model = model_of(LETTER.replace({**COARSE, "spring.kind": "cantilever", "tip.mass_kg": 0.0, **turn}))
     assert model.readouts[READOUT][0] / model.phi[0] == pytest.approx(1.37650543 / 0.13, rel=1e-6)
 
 

@@ -60,15 +60,8 @@ def test_the_floor_of_restitution_is_the_time_of_the_contact(spring):
     row = met(spring, hertz)
     assert row.kick == pytest.approx(1.0, abs=0.02)
     assert row.restitution == pytest.approx(math.sqrt(row.contact_s / row.arc_s), rel=0.03)
-    mass = LETTER.tip.mass_kg
-    linear = (
-        mass
-        * (
-            math.pi
-            / hertz.contact_time(mass, approach_speed(FREQUENCY, LETTER.stop.gap_m, TIME_TRACE_EXCESS))
-        )
-        ** 2
-    )
+    mass, speed = LETTER.tip.mass_kg, approach_speed(FREQUENCY, LETTER.stop.gap_m, TIME_TRACE_EXCESS)
+    linear = mass * (math.pi / hertz.contact_time(mass, speed)) ** 2
     as_hard, harder = (met(spring, LinearContact(stiffness=factor * linear)) for factor in (1.0, 9.0))
     assert as_hard.contact_s == pytest.approx(row.contact_s, rel=0.05)
     assert harder.contact_s == pytest.approx(as_hard.contact_s / 3.0, rel=0.05)

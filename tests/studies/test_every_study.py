@@ -31,16 +31,8 @@ LOOKED_AT = {
 #: Options that keep a small form small.
 SMALLER = {
     "stability": ["--families", "false_restitution,accumulation"],
-    "shape": [
-        f"--set={key}"
-        for key in (
-            "drive.frequencies_hz=[22.2]",
-            "scan.settle_cycles=400",
-            "modes.count=4",
-            "spring.elements_per_leg=12",
-            "spring.elements_on_arc=8",
-        )
-    ],
+    "shape": "--set drive.frequencies_hz=[22.2] --set scan.settle_cycles=400 --set modes.count=4 "
+    "--set spring.elements_per_leg=12 --set spring.elements_on_arc=8".split(),
     "claims": ["--positions", "3", "--set", "modes.count=4"],
     "calibrate": ["--set", "modes.count=4", "--set", "spring.elements_per_leg=12"],
 }
@@ -59,20 +51,8 @@ FEWER = {
 }
 
 #: Studies of driven motions, and those that change the dimensions of a spring.
-DRIVEN = (
-    "adequacy",
-    "breakdown",
-    "chart",
-    "claims",
-    "effective_impact",
-    "hysteresis",
-    "last_period",
-    "noise",
-    "soft_wall",
-    "time_trace",
-    "transitions",
-    "work_precision",
-)
+DRIVEN = "adequacy breakdown chart claims effective_impact hysteresis last_period noise soft_wall".split()
+DRIVEN += ["time_trace", "transitions", "work_precision"]
 ON_A_SPRING = ("breakdown", "calibrate", "effective_impact", "last_period", "shape")
 
 #: A fit takes hundreds of meshes; what the others compute is tested beside their whole forms.

@@ -24,17 +24,8 @@ def trials():
 
 @pytest.fixture
 def run(tmp_path, letter_scene):
-    return Run(
-        study="identify",
-        folder=tmp_path,
-        scene=letter_scene,
-        quick=True,
-        workers=2,
-        executor="threads",
-        options={},
-        warnings=[],
-        command="",
-    )
+    how = dict(quick=True, workers=2, executor="threads", options={}, warnings=[], command="")
+    return Run(study="identify", folder=tmp_path, scene=letter_scene, **how)
 
 
 @pytest.mark.parametrize(("stated", "agrees"), [(1.0, True), (0.8, False), (1.25, False)])

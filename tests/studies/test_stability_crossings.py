@@ -11,21 +11,12 @@ import pytest
 from contact import Regime, simulate
 from contact.integrators import INTEGRATORS, CentralDifference, Exact, GeneralisedAlpha, MoreauJean
 from studies.methods.crossings import Swing
-from studies.methods.stability import accumulation
-from studies.methods.stability.missed_crossings import (
-    OVERSHOOTS,
-    invented,
-    of_package,
-    of_scipy,
-    share_missed,
-    share_wrong,
-    swing_of,
-    tried,
-)
+from studies.methods.stability import accumulation, missed_crossings
+from studies.methods.stability.missed_crossings import OVERSHOOTS, invented, of_package, share_wrong, tried
 from studies.shell.scene import model_of, read_scene
 
 SCENE = read_scene("letter")
-ONE = swing_of(SCENE)
+ONE = missed_crossings.swing_of(SCENE)
 SIX = Swing.of(model_of(SCENE).truncated(6), ONE.oscillator.stop, 0.2)
 PERIOD = 2.0 * math.pi / float(ONE.oscillator.model.omega[0])
 
@@ -58,7 +49,7 @@ def test_exact_methods_miss_none_and_invent_none(name, modes):
 def test_a_grid_misses_what_theory_says(kind):
     trial = of_package(SCENE, kind, {"step": PERIOD / 100})
     for overshoot in (1e-3, 3e-4, 1e-4, 1e-5, 1e-7):
-        theory = float(share_missed(overshoot, trial.step, ONE.pace, trial.percussions))
+        theory = float(missed_crossings.share_missed(overshoot, trial.step, ONE.pace, trial.percussions))
         assert share_wrong(trial, overshoot, 200) == pytest.approx(theory, abs=0.02)
 
 
@@ -72,7 +63,7 @@ def test_a_touch_is_invented_as_far_below_the_stop_as_theory_says(kind):
 
 def test_dop853_misses_half_of_all_crossings_of_one_per_cent_of_the_gap():
     """At 1e-8; nearly all of those that are a hundred times shallower."""
-    trial = of_scipy(SCENE, "DOP853", 1e-8)
+    trial = missed_crossings.of_scipy(SCENE, "DOP853", 1e-8)
     share = {depth: share_wrong(trial, depth, 32) for depth in (1e-1, 1e-2, 1e-4)}
     assert share[1e-1] == 0.0 and 0.3 < share[1e-2] < 0.8 and share[1e-4] > 0.8
 
