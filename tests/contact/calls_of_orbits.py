@@ -146,7 +146,7 @@ ORBITS = (
     of(orbits.fold_excess, lambda c: dict(strobed=c.strobed, period=5), over="motion",
        kind=dict(strobed=each(*NO_MAP, 5)), value=dict(period=2.5)),
     of(orbits.orbit_end, lambda c: dict(
-           strobed=c.strobed, state=c.fast, excess=0.02, most_cycles=128, first_step=2e-4, relative=0.01,
+           strobed=c.strobed, state=c.fast, excess=0.02, most_cycles=512, first_step=2e-4, relative=0.01,
            absolute=1e-7, lowest=-0.5), over="motion",
        kind=dict(strobed=EQ_1), value=dict(first_step=0.0, absolute=0.0, relative=-1.0, lowest=-1.0)),
     of(orbits.orbit_diagram, lambda c: dict(
