@@ -109,7 +109,7 @@ def transitions(
         drawn = draw(scene.readout.quantity, rows, diagrams, name)
         run.figure(stem, drawn, caption + TITLES[name] + ".")
     if (other := ends_beside_folds(rows)) and run.model_choice:
-        run.warn(f"{other}: other modes (modes.count) can move this end, as they were chosen for folds")
+        run.warn(f"{other}: modes were chosen for folds, and more of them (modes.count) can move this end")
     compare(run, rows, parameters)
     seen = [at.rows for at in found if at.rows[0].letter is not None]
     agrees = [of_frequency[0].frequency_hz for of_frequency in seen if judge(run, of_frequency)]
@@ -125,7 +125,8 @@ def transitions(
 def ends_beside_folds(rows: Sequence[Transition]) -> str:
     """A sentence on the orbits of the beam that do not end by a fold; empty if all do."""
     other = [row for row in rows if row.description == "beam" and row.ends_by not in (None, "fold")]
-    return ", ".join(f"at {row.frequency_hz:g} Hz the beam's orbit ends by a {row.ends_by}" for row in other)
+    places = ", ".join(f"{row.frequency_hz:g} Hz ({row.ends_by})" for row in other)
+    return f"the beam's orbit does not end by a fold at {places}" if other else ""
 
 
 def in_words(rows: Sequence[Transition]) -> str:
