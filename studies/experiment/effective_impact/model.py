@@ -45,9 +45,9 @@ from studies.shell.scene import (
     approach_speed,
     beam_at,
     contact_law_of,
-    corresponding,
     hertz_of,
     model_of,
+    own_frequency,
 )
 
 OWN, HERTZ = "contact of the scene", "Hertz"
@@ -202,7 +202,7 @@ def cases_of(spring: Spring, masses: Sequence[Spring], fine: Spring, every: int 
         for excess in EXCESSES[::every]:
             yield one.case("speed", name, law, value=excess, excess=excess)
     yield fine.case("reference", HERTZ if own == hertz else OWN, own)
-    orbit_hz = corresponding(spring.scene, TIME_TRACE_HZ)
+    orbit_hz = own_frequency(spring.scene, TIME_TRACE_HZ)
     for one in masses if own == hertz else ():
         for excess in MASS_EXCESSES:
             yield one.case("mass", f"excess {excess:g}", hertz, excess=excess)

@@ -18,7 +18,7 @@ from studies.physics.least_model import LADDER, REFERENCE
 from studies.shell.scene import Scene, beam_at, damping_of, model_of, modes_of, single_mode_at
 
 LEVELS = {"single_mode": "Eq. (1)", "spring": "beam"}
-LAWS = ("newton", "linear", "hertz")
+LAWS = ("newton", "linear", "hertz", "hunt_crossley")
 MODES = (*LADDER, REFERENCE)
 MESHES = (2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96)
 """Elements on a leg."""
@@ -57,7 +57,7 @@ class Choice:
         Contact and flight cost a fixed part and one proportional to the modes; the eigenvalue problem, some
         milliseconds for each element on a leg and paid once, is shared by as many periods as a diagram takes.
         """
-        fixed, each = {"newton": (1.5, 0.3), "linear": (2.5, 0.4), "hertz": (4.0, 0.6)}[self.law]
+        fixed, each = {"newton": (1.5, 0.3), "linear": (2.5, 0.4)}.get(self.law, (4.0, 0.6))
         return fixed + each * (self.modes + self.residual) + 0.06 * self.mesh
 
 
@@ -71,7 +71,8 @@ class Models:
         kind, radius = scene.spring.kind, scene.tip.ball_radius_m
         self.scene, self._solved = scene, dict[int, ModalModel]()
         modes = min(REFERENCE, len(scene.modal_data.frequencies_hz) or REFERENCE)
-        mesh, law = 0 if kind == "modal_data" else MESHES[-1], "hertz" if radius > 0 else scene.contact.law
+        mesh, law = 0 if kind == "modal_data" else MESHES[-1], scene.contact.law
+        law = "hertz" if radius > 0 and law != LAWS[-1] else law
         self.sharp = Choice(level="spring", law=law, modes=modes, mesh=mesh)
 
     def oscillator(self, choice: Choice, frequency: float) -> ImpactOscillator:
