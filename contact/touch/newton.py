@@ -43,11 +43,12 @@ from contact.trajectory import OUTSIDE, SUSTAINED
 LAW, METHOD = "NewtonRestitution", "event-driven"
 REGIMES = (OUTSIDE, SUSTAINED)
 
-LOWEST_HOP = 200.0
-"""Height of a hop, in rounding bounds of the tip displacement, below which hops that end are a stay: two
-digits of the height are then still good.  A hop loses 2(1 - e) of its height, and rounding may move its end
-by as much as its bound.  Where the loss is smaller than the bound, hops need not get lower, and are a stay if
-they end in this period of the drive.  A hop below the bound itself is a stay even if it never ends."""
+LOST_HOP, LOWEST_HOP = 4.0, 200.0
+"""Heights of hops, in rounding bounds of the tip displacement.  Hops lower than `LOWEST_HOP` are a stay if they
+end: two digits of the height are then still good.  A hop loses 2(1 - e) of its height, and rounding may move
+its end by as much as its bound.  Where the loss is smaller than the bound, hops need not get lower, and are a
+stay if they end in this period of the drive.  A hop lower than `LOST_HOP` is lost in rounding, which moves its
+start, its top and the search for its end by a bound each.  It is a stay even if it never ends."""
 
 STEADY_PULL = 0.1
 """Part of itself by which the acceleration of the tip may change until the hops end: W is then right to 4 %,
@@ -93,7 +94,7 @@ def hops_end(motion, run, u, v, rebound, rounding):
     lowest, energy = rounding * acceleration, 0.5 * rebound * rebound
     if acceleration <= 0.0 or energy * lost > max(LOWEST_HOP * lost, 1.0) * lowest:
         return False
-    if energy <= lowest:
+    if energy <= LOST_HOP * lowest:
         return True
     left = motion.period if energy <= LOWEST_HOP * lowest else motion.period - run.clock
     pull = acceleration * lost  # W = 2 rebound/pull

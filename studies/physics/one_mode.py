@@ -45,7 +45,7 @@ def doubts(scene: Scene) -> Iterator[str]:
     limits = ("free_period_s", "s", SAME_SPRING), ("decay_rate_per_s", "1/s", SAME_DECAY)
     for (key, unit, limit), found in zip(limits, first_mode(scene), strict=True):
         given = getattr(scene.single_mode, key)
-        if abs(given - found) > limit * found:
+        if not abs(given - found) <= limit * min(given, found):
             yield (
                 f"single_mode.{key} is {given:g} {unit}, but the first mode of the spring has {found:.5g} "
                 f"{unit}: map and Eq. (1) describe another spring than the beam; -1 takes the value of mode 1"
