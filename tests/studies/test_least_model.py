@@ -100,7 +100,7 @@ def test_where_the_reference_has_no_fold_its_first_collision_chooses(letter_scen
 
 
 def test_modes_are_chosen_at_the_drive_and_excess_of_the_command_and_reach_above_it(letter_scene):
-    needs, options = time_trace.needs, {"frequency": 40.0, "excess": 0.2}
+    needs, options = {"kick": 0.005}, {"frequency": 40.0, "excess": 0.2}
     frequencies, excess = conditions(letter_scene, options)
     assert (frequencies, excess) == ([40.0], 0.2)
     scene, sentence = least_modes(letter_scene, needs, frequencies, excess)
