@@ -19,7 +19,7 @@ reference by no more than the tolerances:
     tip_trace      tip over one period of the orbit settled at the excess, middle drive frequency; root
                    mean square of the difference over the gap, infinite if impacts differ in number
 
-Drive frequencies, excess and law are those of the command; the excess is 0.013 where it has none.
+The command gives drive frequencies, excess and law; the excess is 0.013 where it gives none.
 
 Folds are those of the collision as a kick of all modes (``contact.orbits.KickFamily``), which has them to
 0.2 % (median; 1 % at worst) at a hundredth of the price of following the orbits. Modes left out act on a
@@ -194,8 +194,8 @@ QUANTITIES: Mapping[str, tuple[Ask, Distance, bool, bool]] = {
     "tip_trace": (tip_trace, error_of_trace, False, False),
     "born_period": (born_at, largest_error, True, True),
 }
-"""Name -> answer, distance, whether it is asked at every drive frequency, and whether at scan.born_excess.
-Born periods are asked last: transients are long where modes are missing."""
+"""Name -> answer, distance, whether it is needed at every drive frequency, and whether at scan.born_excess.
+Born periods come last: transients are long where modes are missing."""
 
 
 class Question(NamedTuple):
@@ -213,7 +213,7 @@ class Question(NamedTuple):
 def questions(
     scene: Scene, needs: Mapping[str, float], whole: ModalModel, excess: float = TRACE_EXCESS
 ) -> Iterator[Question]:
-    """The questions of the needs, or those of `ALWAYS` where the reference, the model `whole`, lacks one."""
+    """The questions of the needs, or of `ALWAYS` where the reference, the model `whole`, lacks one."""
     lacking = dict[float, tuple[str, str]]()
 
     def off_of(quantity: str, frequency: float) -> Off:
@@ -258,7 +258,7 @@ def least_modes(
     needs : mapping of quantity to tolerance
         Quantities and their errors are listed in the module's docstring.
     frequencies, excess : list of float, float
-        Drive frequencies [Hz], by default those of the scene, and excess [1] of the command.
+        Drive frequencies [Hz], by default of the scene, and excess [1] of the command.
     """
     if scene.modes.count or scene.spring.kind == "modal_data" or scene.drive.kind != "harmonic":
         return scene, ""

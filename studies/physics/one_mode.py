@@ -1,6 +1,6 @@
 """Eq. (1) of a scene: what it takes from the beam, and where it describes another spring or no linear one.
 
-Period and decay rate that a scene leaves open are those of mode 1 (``studies.shell.scene``).  A restitution
+Period and decay rate that a scene leaves open come from mode 1 (``studies.shell.scene``).  A restitution
 that it leaves open is that of a first collision of the beam.
 """
 

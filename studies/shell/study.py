@@ -58,7 +58,7 @@ def study(
     quick : mapping of option to value
         Defaults of the small form, --quick.
     at : function of scene and options
-        Drive frequencies [Hz] and excess [1] at which its numbers are needed; by default those of the scene.
+        Drive frequencies [Hz] and excess [1] at which its numbers are needed; by default of the scene.
     """
     return lambda function: Study(function=function, needs=dict(needs or {}), quick=dict(quick or {}), at=at)
 
