@@ -30,10 +30,8 @@ class ContactError(RuntimeError):
         """The sentence and what can be pickled, so that an error leaves a process of workers as itself."""
         kept = dict[str, object]()
         for name, value in self.__dict__.items():
-            with suppress(
-                pickle.PicklingError, AttributeError, TypeError
-            ):  # an orbit under a law of functions
-                pickle.dumps(value)
+            with suppress(pickle.PicklingError, AttributeError, TypeError):
+                pickle.dumps(value)  # fails for an orbit under a law of functions
                 kept[name] = value
         return type(self).__new__, (type(self), *self.args), kept
 

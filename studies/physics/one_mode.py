@@ -34,7 +34,7 @@ def with_restitution(scene: Scene) -> tuple[Scene, str]:
         value = math.nan if collision is None else collision.restitution
         words = f"of a first collision at {middle_of(scene):g} Hz, excess {TRACE_EXCESS:g}"
     if not 0.0 <= value <= 1.0:
-        return scene, f"single_mode.restitution stays open: mode 1 has none {words}"
+        return scene, f"single_mode.restitution stays open: there is none between 0 and 1 {words}"
     value = float(f"{value:.9g}")
     changed = scene.replace({"single_mode.restitution": value}, provenance="first collision")
     return changed, f"single_mode.restitution is {value:.4g}, {words}"

@@ -125,14 +125,10 @@ def whole_branch(
         for ended, last in ((branch.ended_low, branch.orbits[0]), (branch.ended_high, branch.orbits[-1])):
             if ended not in WHOLE and not grazes(last):
                 raise branch_ended(last, f"it is lost: {ended}")
-            fast, rise = (
-                math.isclose(last.speed, curve.fastest),
-                last.slope * last.speed / (1.0 + last.excess),
-            )
-            if fast and rise < PROPORTIONAL:
-                raise branch_ended(
-                    last, "at the greatest speed of the search the amplitude does not yet rise"
-                )
+            rise = last.slope * last.speed / (1.0 + last.excess)
+            if math.isclose(last.speed, curve.fastest) and rise < PROPORTIONAL:
+                words = "at the greatest speed of the search the amplitude does not yet rise"
+                raise branch_ended(last, words)
         return curve, points, branch
     words = f"no orbit of period {family.period} was found to start from"
     raise BranchEnded(time=0.0, gap=0.0, velocity=0.0, detail=words)

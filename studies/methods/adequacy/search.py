@@ -81,7 +81,7 @@ QUANTITIES: Mapping[str, tuple[Ask, Distance, str, float]] = {
 class Row(Choice):
     """The least model for a question, or the reference where none is good enough (`reached` is then false).
 
-    Errors are those of ``Search.error``, in `unit`; `error` has that of the reference itself added.  It is
+    Errors come from ``Search.error``, in `unit`; `error` includes the error of the reference itself.  It is
     infinite, and `least` is "none", where the reference has no answer.
     """
 
