@@ -104,11 +104,11 @@ CAUSES = {
     "Eq. (1)": "none: Eq. (1)",
     "beam": "none: beam",
     "T -0.02 ms": "the printed error",
-    "finite rotations, gap 11.9 mm": "large rotations of the default spring",
+    "finite rotations, gap 11.9 mm": "an effect of geometry",
     "T -0.02 ms, finite rotations": "both",
     "T -0.02 ms, finite rotations, gap x 1.25": "wider by a quarter",
     "recoil of 10 kg on 2 Hz, T on a base held still": "measured on a base held still",
-    "finite rotations and anticlastic, legs of 24 mm": "stiffen as they curve",
+    "finite rotations and anticlastic, legs of 24 mm": "stiffen as they curve across",
 }
 """Change -> its words in the table of `last_period`."""
 
@@ -154,9 +154,11 @@ def told_by(name: str, found: dict) -> Iterator[str]:
         yield f"delay is {1e3 * found['reference']['delay_s']:.2f} ms"
     if name == "soft_wall":
         beam = found["beam"]
-        yield f"below an excess of {beam['half_excess']:.0e}".replace("e-0", "e-")
-        yield f"holds above {beam['square_root_from']:.0e}".replace("e-0", "e-")
-        yield f"at {beam['unstable_excess']:.0e}, p1".replace("e-0", "e-")
+        at = {
+            key: f"{beam[key]:.0e}".replace("e-0", "e-") for key in beam if key.endswith(("excess", "from"))
+        }
+        yield f"above an excess of {at['square_root_from']}. At {at['half_excess']} the"
+        yield f"at {at['unstable_excess']}, p1 of the beam"
     if name == "breakdown":
         yield f"a ball of {1e3 * found['found']['tip_mass_kg']:g} g does"
     if name == "adequacy":
