@@ -10,17 +10,33 @@ from itertools import pairwise
 from pathlib import Path
 
 from studies import start_as_program
-from studies.shell.programs import MAIN, WRONG_USE, chapters_in_words, module_of, names, studies, unknown
+from studies.shell.programs import (
+    COMMAND,
+    DONE,
+    FAILED_CELLS,
+    MAIN,
+    WRONG_USE,
+    chapters_in_words,
+    module_of,
+    names,
+    overview,
+    studies,
+    tell,
+    unknown,
+)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run what the arguments name, those of the command line by default; returns the exit code."""
     given = list(sys.argv[1:] if arguments is None else arguments)
+    if given in (["--list"], ["list"]):
+        tell(chapters_in_words(), sys.stdout)
+        return DONE
     if given and not given[0].startswith("-"):
         return run_program(given[0], given[1:])
-    if given == ["--list"]:
-        print(chapters_in_words())
-        return 0
+    if "--all" not in given and {"--help", "-h"}.intersection(given):
+        tell(overview(), sys.stdout)
+        return DONE
     if "--all" in given and "--dump-scene" not in given:
         from studies.shell import every_study
 
@@ -31,7 +47,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def run_program(name: str, arguments: Sequence[str]) -> int:
     """Run the program of this name; an unknown one is answered with the chapters."""
     if name not in names():
-        print(f"python -m studies: {unknown(name)}\n{chapters_in_words()}", file=sys.stderr)
+        print(f"{COMMAND}: {unknown(name)}\n{chapters_in_words()}", file=sys.stderr)
         return WRONG_USE
     if name == "tour":
         sys.argv[1:] = arguments
@@ -47,8 +63,8 @@ def main_job(arguments: Sequence[str]) -> int:
     from studies.shell.page import told_page
 
     main_study = getattr(importlib.import_module(module_of(MAIN)), MAIN)
-    code = int(main_study.main(arguments, command="python -m studies"))
-    if code in (0, 3) and not {"--help", "-h", "--dump-scene"}.intersection(arguments):
+    code = int(main_study.main(arguments, command=COMMAND))
+    if code in (DONE, FAILED_CELLS) and "--dump-scene" not in arguments:
         out = next((b for a, b in pairwise(arguments) if a == "--out"), "results")
         out = next((word.partition("=")[2] for word in arguments if word.startswith("--out=")), out)
         print(told_page(Path(out)), file=sys.stderr)

@@ -1,4 +1,4 @@
-"""A window to explore: drive frequency, excess and restitution on sliders, for a lecture or a first look.
+"""A window with sliders for drive frequency, excess and restitution.
 
 For map, Eq. (1), Eq. (1) with two parameters (the rebound law of the beam) or beam, while one drags: the tip
 over time with its impacts, the strobe points, and the orbit diagram around the present excess F/F_g - 1,

@@ -1,4 +1,4 @@
-"""Everything that the studies stored, as one page to read, print and pass on.
+"""One page with the results of all studies, to read, print and pass on.
 
 Gathered: the answers to the questions that the letter raises, the letter point by point, for
 each study its account, figures and tables, what was assumed, and versions. Nothing is computed and no result

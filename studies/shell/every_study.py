@@ -90,7 +90,7 @@ def run_in_turn(
 
     expected = {name: round(known[name][quick]) for name in plan}
     say(f"{len(plan)} studies to run, about {duration(sum(expected.values()))}")
-    with ExitStack() as after, progress("all studies, in seconds", sum(expected.values())) as tick:
+    with ExitStack() as after, progress("all studies", sum(expected.values()), "s") as tick:
         for number in (signal.SIGINT, signal.SIGTERM):
             if signal.getsignal(number) is not signal.SIG_IGN:
                 after.callback(signal.signal, number, signal.signal(number, signalled))

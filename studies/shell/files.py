@@ -34,12 +34,18 @@ SCHEMA = 2
 
 
 def make_folder(folder: Path) -> Path:
-    """The folder, made if need be and seen to accept files; better told before a computation than after."""
+    """The folder, made if need be."""
     with told(f"results cannot be written to the folder {folder}"):
         folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=folder):
-            pass
     return folder
+
+
+def require_writable(folder: Path) -> None:
+    """Refuse a folder that takes no files or cannot be made, before a computation; nothing is left there."""
+    with told(f"results cannot be written to the folder {folder}"):
+        there = next(path for path in (folder, *folder.parents) if path.exists())
+        with tempfile.TemporaryFile(dir=there):
+            pass
 
 
 def write_atomically(path: Path, content: bytes) -> Path:

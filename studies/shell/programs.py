@@ -42,7 +42,10 @@ STUDY = re.compile(r"^@study\(", re.MULTILINE)
 MAIN = "transitions"
 """What `python -m studies` runs."""
 
-ALL = "python -m studies --all"
+COMMAND = "python -m studies"
+"""What runs the main job, and NAME any program."""
+
+ALL = f"{COMMAND} --all"
 """What runs every study."""
 
 
@@ -84,6 +87,16 @@ def chapters_in_words() -> str:
         for title, each in found
     ]
     return "\n\n".join(blocks)
+
+
+def overview() -> str:
+    """The answer to --help without a name: the programs, and where their options are listed."""
+    return f"""{chapters_in_words()}
+
+{COMMAND} NAME           run one of them; its options: {COMMAND} NAME --help
+{COMMAND}                run {MAIN}; its options: {COMMAND} {MAIN} --help
+{COMMAND} --all          run every study; its options: {ALL} --help
+{COMMAND} --dump-scene   print the scene of the letter, to be changed for another spring"""
 
 
 def account_of(name: str) -> str:

@@ -6,18 +6,23 @@ import json
 import re
 from pathlib import Path
 from types import SimpleNamespace
+from typing import get_type_hints
 
 import numpy as np
 import pytest
+from conftest import study_of
 
+from studies.__main__ import main
 from studies.experiment.hysteresis.__main__ import Accuracy, Causes, judge
 from studies.experiment.hysteresis.model import CAUSES, DESCRIPTIONS
 from studies.experiment.soft_wall.model import loss_of_stability
 from studies.measurement.identify import next_measurement
 from studies.methods.work_precision.problems import problems_of
 from studies.shell import plotting
-from studies.shell.programs import account_of, module_of, names, run_times, studies
+from studies.shell.executors import progress
+from studies.shell.programs import COMMAND, account_of, module_of, names, run_times, studies
 from studies.shell.run import Run
+from studies.shell.study import Study
 
 ON_THE_FRAME = studies()
 
@@ -81,33 +86,32 @@ REFUSED = [
     *((name, "--set spring.kind=modal_data", "modal_data") for name in ON_A_SPRING),
     ("breakdown", "--set single_mode.free_period_s=0.06", "free_period_s"),
     ("chart", "--points 1 9", "points"),
-    ("chart", "--side 1", "side is 1; it must be 2 or more"),
-    ("breakdown", "--points 1", "points is 1; it must be 2 or more"),
-    ("breakdown", "--points 900000", "points is 900000, which makes 4.5e+06 cells"),
-    ("modes", "--frames 1000000", "--frames must be an even number, at most 10000"),
-    ("time_trace", "--frames 1000000", "frames is 1000000; a film has at most 10000"),
-    ("last_period", "--stability 0", "stability is 0 [1]; it must be above 0"),
-    ("last_period", "--correlation-times -1", "correlation_times holds -1 s; it must be 0 or more"),
-    ("identify", "--noise-um 0", "noise_um is 0.0 um; it must be finite and above zero"),
+    ("chart", "--side 1", "--side: must be a whole number from 2 to 1000, not '1'"),
+    ("breakdown", "--points 1", "--points: must be a whole number from 2 to 200000"),
+    ("breakdown", "--points 900000", "from 2 to 200000, not '900000'"),
+    ("modes", "--frames 11", "frames is 11; it must be an even number"),
+    ("time_trace", "--frames 1000000", "--frames: must be a whole number from 1 to 10000"),
+    ("last_period", "--stability 0", "--stability: must be a number above 0 and at most 0.02, not '0'"),
+    ("last_period", "--correlation-times -1", "--correlation-times: must be a number from 0 to 1e+09 s"),
+    ("identify", "--noise-um 0", "--noise-um: must be a number above 0 and at most 1e+09 µm, not '0'"),
     ("identify", "--drive 22.2 2", "drive is 22.2 Hz, 2 mm; it needs a record"),
     ("modes", "--executor moon", "executor is 'moon'; it must be threads"),
     ("time_trace", "--set stop.gap_m=1e-300", "stop.gap_m must be at least 1e-12"),
     ("time_trace", "--set single_mode.free_period_s=1e-300", "single_mode.free_period_s"),
     ("time_trace", "--set spring.young_modulus_pa=1e300", "at most 1e+15 (unit Pa)"),
-    ("chart", "--side 5000", "side is 5000, which makes 2.5e+07 cells"),
+    ("chart", "--side 5000", "--side"),
     ("chart", "--points 90000 90000", "points is 90000 90000, which makes 8.1e+09 cells"),
-    ("hysteresis", "--step 1e-9", "step is 1e-09 Hz, which makes"),
+    ("hysteresis", "--step 1e-9", "--step: must be a number from 0.0001 to 4.2 Hz"),
     ("hysteresis", "--step 0", "step"),
     ("hysteresis", "--set drive.frequencies_hz=[2000]", "2000 Hz"),
-    ("noise", "--stability 0", "stability is 0 [1]; it must be above 0"),
+    ("noise", "--stability 0", "--stability"),
     ("noise", "--amplitude-step 1e-6", "amplitude_step is 1e-06 [1]; with a stability of"),
-    ("noise", "--waiting 10", "waiting is 10 drive periods; it must be at least 1000"),
-    ("noise", "--correlation-times -1", "correlation_times holds -1 s; it must be 0 or more"),
-    ("noise", "--scans 3", "scans is 3; quantiles need at least 10"),
+    ("noise", "--waiting 10", "--waiting: must be a whole number from 1000"),
+    ("noise", "--scans 3", "--scans"),
     ("soft_wall", "--decades 5 3", "decades"),
     ("stability", "--families none", "families"),
     ("time_trace", "--excess=-1", "excess"),
-    ("time_trace", "--frequency 0", "frequencies_hz"),
+    ("time_trace", "--frequency 0", "--frequency"),
     ("time_trace", "--frequency 1e6", "1e+06 Hz"),
 ]
 
@@ -118,7 +122,53 @@ def test_what_a_study_cannot_use_is_refused_in_one_sentence(run_study, name, arg
     assert ran.code == 2 and ran.summary == {}
     sentence = ran.err.splitlines()[-1]
     assert sentence.startswith(f"python -m studies {name}: ") and named in sentence, ran.err
-    assert "Traceback" not in ran.err
+    assert "Traceback" not in ran.err and not ran.folder.exists()
+
+
+#: Options of which one of the impossible numbers is possible after all.
+POSSIBLE = {("time_trace", "excess"): "0", ("identify", "delay_ms"): "0"}
+POSSIBLE |= {(name, "correlation_times"): "0" for name in ("last_period", "noise")}
+
+
+@pytest.mark.parametrize("name", ON_THE_FRAME)
+def test_an_impossible_number_is_refused_before_anything_is_computed(tmp_path, capsys, monkeypatch, name):
+    """Each number among the options of each study."""
+    study = study_of(name)
+    monkeypatch.setattr(Study, "_compute", lambda *_: pytest.fail("the study began"))
+    hints = get_type_hints(study.function, include_extras=True)
+    for option in study.defaults(quick=False):
+        kind = str(hints[option])
+        if "int" not in kind and "float" not in kind:
+            continue
+        how_many = 2 if re.search(r"tuple\[\w+, \w+\]", kind) else 1
+        for number in {"-2", "0", "1e300"} - {POSSIBLE.get((name, option))}:
+            flag = f"--{option.replace('_', '-')}"
+            assert study.main([flag, *how_many * [number], "--out", str(tmp_path)]) == 2, (option, number)
+            (sentence,) = capsys.readouterr().err.splitlines()
+            assert re.search(rf"{flag}: must be .* (from|above) [-\d.]+ .*, not '{number}'", sentence)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_help_and_list_show_every_program_in_one_short_line(capsys):
+    for words in (["list"], ["--list"], ["--help"], ["-h", "--quick"]):
+        assert main(words) == 0
+        told = capsys.readouterr().out
+        for name in names():
+            (line,) = re.findall(rf"^    {name} +(.*)$", told, flags=re.MULTILINE)
+            assert 20 < len(line) <= 75 and line.endswith(".")
+    assert f"{COMMAND} transitions --help" in told
+
+
+def test_progress_says_what_it_counts(capsys, monkeypatch, tmp_path, letter_scene):
+    monkeypatch.setattr("studies.shell.executors.INTERVAL", 0.0)
+    run = Run(study="transitions", folder=tmp_path, scene=letter_scene, command="")
+    list(run.track(range(3), "frequencies"))
+    with progress("all studies", 249, "s") as tick:
+        tick(50)
+        tick(52)
+    said = [line.partition(" left")[0] for line in capsys.readouterr().err.splitlines()]
+    assert re.fullmatch(r"transitions: 2 of 3 frequencies, [\d.e+]+ (per s|s each), \d:\d\d:\d\d", said[1])
+    assert re.fullmatch(r"all studies: 102 of about 249 s, \d:\d\d:\d\d", said[-1])
 
 
 @pytest.mark.slow

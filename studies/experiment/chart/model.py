@@ -23,7 +23,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from beam import InvalidValue
 from contact import Band, ImpactOscillator, MaximalFamily
 from contact.orbits import AmplitudeScan, PeriodicOrbit, Shooting, fold_along_frequency
 from studies.shell.options import require_cells
@@ -51,10 +50,6 @@ class Plane:
     frequencies_hz: tuple[float, float] = FREQUENCIES_HZ
 
     def __post_init__(self) -> None:
-        if self.columns < 2 or self.rows < 2:
-            raise InvalidValue(
-                f"points of the chart are {self.columns} by {self.rows}; each must be 2 or more"
-            )
         require_cells("points", f"{self.columns} {self.rows}", self.columns * self.rows)
 
     def frequencies(self) -> NDArray[np.float64]:
