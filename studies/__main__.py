@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from itertools import pairwise
 from pathlib import Path
 
-from studies import start_as_program
+from studies import __version__, start_as_program
 from studies.shell.programs import (
     COMMAND,
     DONE,
@@ -29,6 +29,9 @@ from studies.shell.programs import (
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run what the arguments name, those of the command line by default; returns the exit code."""
     given = list(sys.argv[1:] if arguments is None else arguments)
+    if given == ["--version"]:
+        tell(f"grazing-spring {__version__}", sys.stdout)
+        return DONE
     if given in (["--list"], ["list"]):
         tell(chapters_in_words(), sys.stdout)
         return DONE

@@ -33,6 +33,7 @@ from studies.physics.one_mode import with_restitution
 from studies.shell.executors import say
 from studies.shell.options import Parser, add_scene, tool
 from studies.shell.plotting import DOWN, EXCESS, GUIDE, INCH, PAGE, UP, house_style, points, strobe_points
+from studies.shell.programs import COMMAND
 from studies.shell.scene import Scene, harmonic, model_of, read_scene
 
 KINDS = {"map": (61, 600), "Eq. (1)": (41, 600), "two parameters": (41, 600), "beam": (21, 200)}
@@ -153,6 +154,6 @@ def explore(given: Any) -> tuple[str, dict[str, object]]:
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Explore from the command line; returns 0, or 2 for wrong use and where there is no display."""
-    parser = Parser("python -m studies explore", __doc__ or "")
+    parser = Parser(f"{COMMAND} explore", __doc__ or "")
     add_scene(parser)
     return tool(parser, argv, explore)

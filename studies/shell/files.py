@@ -27,7 +27,7 @@ from uuid import uuid4
 
 import numpy as np
 
-from studies import ROOT
+from studies import ROOT, __version__
 
 SCHEMA = 2
 """Number of the layout of summary.json, manifest.json and the JSON on standard output."""
@@ -132,9 +132,10 @@ def fingerprint(scene: object, settings: Mapping[str, object]) -> str:
 
 def versions() -> dict[str, str]:
     """Versions of Python and of the packages that this one declares and that are installed."""
-    found, own = {"python": platform.python_version()}, "grazing-spring"
+    own = "grazing-spring"
+    found = {"python": platform.python_version(), own: __version__}
     with suppress(PackageNotFoundError):
-        for name in [own, *(re.split(r"[^\w.-]", each)[0] for each in requires(own) or ())]:
+        for name in (re.split(r"[^\w.-]", each)[0] for each in requires(own) or ()):
             with suppress(PackageNotFoundError):
                 found[name] = version(name)
     return found

@@ -19,7 +19,7 @@ from typing import Annotated, Literal, NoReturn, TextIO, Union, get_args, get_or
 from beam import InvalidValue
 from studies.shell.executors import require_place
 from studies.shell.files import SCHEMA
-from studies.shell.programs import DONE, perform, tell
+from studies.shell.programs import DONE, by_own_name, perform, tell
 
 Answer = Mapping[str, object]
 
@@ -74,7 +74,7 @@ class Parser(argparse.ArgumentParser):
     def __init__(self, command: str, account: str) -> None:
         super().__init__(
             prog=command,
-            description=account,
+            description=by_own_name(account),
             usage=f"{command} [options]",
             allow_abbrev=False,
             formatter_class=argparse.RawDescriptionHelpFormatter,

@@ -42,8 +42,9 @@ STUDY = re.compile(r"^@study\(", re.MULTILINE)
 MAIN = "transitions"
 """What `python -m studies` runs."""
 
-COMMAND = "python -m studies"
-"""What runs the main job, and NAME any program."""
+MODULE = "python -m studies"
+COMMAND = "grazing-spring" if Path("".join(sys.argv[:1])).stem == "grazing-spring" else MODULE
+"""What runs the main job, and with a NAME any program: as this process was started."""
 
 ALL = f"{COMMAND} --all"
 """What runs every study."""
@@ -99,9 +100,14 @@ def overview() -> str:
 {COMMAND} --dump-scene   print the scene of the letter, to be changed for another spring"""
 
 
+def by_own_name(text: str) -> str:
+    """The text with the command as this process was started."""
+    return text.replace(MODULE, COMMAND)
+
+
 def account_of(name: str) -> str:
     """What a study says of itself: its docstring."""
-    return ast.get_docstring(ast.parse(programs()[name].read_text("utf-8"))) or ""
+    return by_own_name(ast.get_docstring(ast.parse(programs()[name].read_text("utf-8"))) or "")
 
 
 def run_times(table: Path = FOLDER / "shell" / "run_times.csv") -> dict[str, tuple[float, float]]:
@@ -161,9 +167,9 @@ def refuse_arguments(name: str, account: str) -> None:
     """For a script without options: --help prints its account, any other argument is refused."""
     if as_program() and (words := sys.argv[1:]):
         if words[0] in ("-h", "--help"):
-            tell(account, sys.stdout)
+            tell(by_own_name(account), sys.stdout)
             raise SystemExit(DONE)
-        print(f"python -m studies {name}: {words[0]} is refused; it takes no options", file=sys.stderr)
+        print(f"{COMMAND} {name}: {words[0]} is refused; it takes no options", file=sys.stderr)
         raise SystemExit(WRONG_USE)
 
 

@@ -34,7 +34,16 @@ from contact import ContactError
 from studies.shell.executors import duration
 from studies.shell.files import SCHEMA
 from studies.shell.options import add_options, parser_of
-from studies.shell.programs import DONE, FAILED_CELLS, INTERRUPTED, as_program, perform, run_time_of, tell
+from studies.shell.programs import (
+    COMMAND,
+    DONE,
+    FAILED_CELLS,
+    INTERRUPTED,
+    as_program,
+    perform,
+    run_time_of,
+    tell,
+)
 from studies.shell.run import Run
 from studies.shell.scene import Scene, read_scene
 
@@ -90,7 +99,7 @@ class Study:
     def main(self, argv: Sequence[str] | None = None, *, command: str | None = None) -> int:
         """Read the arguments, run the study, store and report; returns the exit code."""
         arguments = list(sys.argv[1:] if argv is None else argv)
-        words = command or f"python -m studies {self.name}"
+        words = command or f"{COMMAND} {self.name}"
         return perform(self.name, words, arguments, lambda output: self._perform(words, arguments, output))
 
     def _perform(self, command: str, argv: list[str], output: TextIO) -> int:
