@@ -33,7 +33,7 @@ from studies.physics.one_mode import with_restitution
 from studies.shell.executors import say
 from studies.shell.options import Parser, add_scene, tool
 from studies.shell.plotting import DOWN, EXCESS, GUIDE, INCH, PAGE, UP, house_style, points, strobe_points
-from studies.shell.programs import COMMAND
+from studies.shell.programs import COMMAND, needs
 from studies.shell.scene import Scene, harmonic, model_of, read_scene
 
 KINDS = {"map": (61, 600), "Eq. (1)": (41, 600), "two parameters": (41, 600), "beam": (21, 200)}
@@ -141,10 +141,10 @@ def explore(given: Any) -> tuple[str, dict[str, object]]:
         if type(figure.canvas.manager) is FigureManagerBase:
             raise ImportError("matplotlib found none")
     except (ImportError, RuntimeError) as error:  # the second where a web page needs another package
-        needs = "a window needs a display, and a toolkit such as python3-tk"
-        if package := getattr(error.__cause__ or error, "name", None):
-            needs = f"matplotlib's {matplotlib.get_backend()} needs the package {package}"
-        raise InvalidValue(f"{needs}: {error}") from error
+        lack = "a window needs a display, and a toolkit such as python3-tk"
+        if getattr(error.__cause__ or error, "name", None) == "tornado":
+            lack = needs(f"matplotlib's {matplotlib.get_backend()}", "tornado")
+        raise InvalidValue(f"{lack}: {error}") from error
     with house_style():
         window = Window(scene, figure)
         with suppress(KeyboardInterrupt):

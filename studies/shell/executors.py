@@ -15,6 +15,7 @@ from contextlib import contextmanager
 from datetime import timedelta
 
 from beam import InvalidValue
+from studies.shell.programs import needs
 
 INTERVAL = 30.0
 """Seconds between two lines of progress where there is no terminal."""
@@ -116,13 +117,11 @@ def _quiet() -> None:
 
 @contextmanager
 def _cluster(address: str) -> Iterator[Executor]:
-    """The workers of a dask scheduler, which must have the same program and packages (extra `cluster`)."""
+    """The workers of a dask scheduler, which must have the same program and packages."""
     try:
         from distributed import Client
     except ImportError as error:
-        raise InvalidValue(
-            "a cluster needs the package distributed: python -m pip install 'grazing-spring[cluster]'"
-        ) from error
+        raise InvalidValue(needs("a cluster", "distributed")) from error
     try:
         client = Client(f"tcp://{address}", timeout=PATIENCE)
     except (OSError, ValueError) as error:

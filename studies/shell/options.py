@@ -31,14 +31,6 @@ MOST_CELLS = 1_000_000
 of an hour, and their numbers fit into memory."""
 
 
-def require_cells(option: str, value: object, count: float) -> None:
-    """Refuse an option that makes more cells than a study computes."""
-    if not count <= MOST_CELLS:
-        raise InvalidValue(
-            f"{option} is {value}, which makes {count:.3g} cells; at most {MOST_CELLS:g} are computed"
-        )
-
-
 @dataclass(frozen=True)
 class Within:
     """Beside the words of an argument: its numbers are `low` or more, or above it if `open`, to `high`."""
@@ -64,8 +56,9 @@ class Within:
         raise argparse.ArgumentTypeError(f"must be {words} {self}, not {text[:40]!r}")
 
 
+HERTZ = Within(0, 1e7, "Hz", open=True)
 BOUNDS = {int: Within(1, MOST_CELLS), float: Within()}
-"""Of numbers that are not marked."""
+"""Of a drive frequency; of numbers that are not marked."""
 
 
 class Parser(argparse.ArgumentParser):
@@ -177,10 +170,8 @@ def add_options(parser: Parser, function: Callable[..., object]) -> dict[str, ob
                 several = Ellipsis in get_args(kind)
                 about["nargs"], kind = "+" if several else len(get_args(kind)), get_args(kind)[0]
             bounds = next((mark for mark in marks if isinstance(mark, Within)), BOUNDS.get(kind))
-            about |= {
-                "type": partial(bounds.read, kind) if bounds else kind,
-                "metavar": kind.__name__.upper(),
-            }
+            reader = partial(bounds.read, kind) if bounds else kind
+            about |= {"type": reader, "metavar": kind.__name__.upper()}
             about["help"] = f"{told}; {bounds}" if bounds in marks else told
             if POSITIONAL in marks:
                 flag, about = name, {**about, "nargs": "?", "metavar": name.upper(), "default": default}

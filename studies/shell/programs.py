@@ -50,6 +50,11 @@ ALL = f"{COMMAND} --all"
 """What runs every study."""
 
 
+def needs(what: str, packages: str) -> str:
+    """The sentence on missing packages of an extra, with the command that installs them."""
+    return f"{what} needs {packages}: python -m pip install {packages}"
+
+
 def chapter(name: str) -> dict[str, Path]:
     """The studies of a chapter: name -> the file that runs."""
     found = {path.stem: path for path in (FOLDER / name).glob("[a-z]*.py")}

@@ -1,5 +1,4 @@
 """Periods and numbers of impacts over drive frequency and amplitude.
-The amplitude is raised and lowered.
 
 Claim (letter 1996, Figs. 1 to 3, for a whole plane): below grazing an orbit p_m coexists with the motion
 without impacts down to its fold; at grazing the period follows the bands of the map; above it periods
@@ -51,7 +50,7 @@ from studies.experiment.chart.model import (
     side_by_side,
 )
 from studies.physics.descriptions import TITLES, strobed_at
-from studies.shell.options import MOST_CELLS, Within
+from studies.shell.options import HERTZ, MOST_CELLS, Within
 from studies.shell.scene import (
     Scene,
     beam_at,
@@ -93,11 +92,7 @@ def chart(
     points: Annotated[
         tuple[int, int] | None, "frequencies and amplitudes (400 400, beam 120 120)", Within(2, MOST_CELLS)
     ] = None,
-    cut_hz: Annotated[
-        float | None,
-        "drive frequency of the cut [Hz] (21.5; another spring: its f T)",
-        Within(0, 1e7, "Hz", open=True),
-    ] = None,
+    cut_hz: Annotated[float | None, "frequency of the cut (21.5; another spring: its f T)", HERTZ] = None,
     side: Annotated[int, "starts along each side of the basins", Within(2, 1000)] = 200,
     fresh: Annotated[bool, "forget what is stored and begin anew"] = False,
 ) -> Mapping[str, object]:

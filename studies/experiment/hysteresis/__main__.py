@@ -1,5 +1,4 @@
 """Fig. 3 of the letter: hysteresis of the p_m orbits against frequency.
-It names the causes why measurement and map differ.
 
 Claim (letter 1996): "All experimental resonances are found in place, but the measured hysteresis differs from
 the prediction", which the letter puts down to higher modes; and: "The energy loss and time delay at impact

@@ -1,5 +1,4 @@
 """Why p10 is the letter's last period, and what errors can change.
-The errors include values that the letter does not print.
 
 Claims (letter 1996): T = 40.80 +- 0.02 ms; the last of the six transitions, at 23.40 Hz, goes to p10; p10 "is
 at the limit of our experimental resolution and stability".  Map, Eq. (1) and beam have p11 there.

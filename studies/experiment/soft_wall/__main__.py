@@ -1,5 +1,4 @@
 """A wall of finite hardness: how it smooths the square root at grazing.
-It also names the orbit that this adds at grazing.
 
 Claim (letter 1996, last page): a wall "such that at impact the spring constant changes by a factor K >> 1"
 affects the bifurcations close to grazing in a characteristic manner, to larger amplitudes the smaller K; the

@@ -1,5 +1,4 @@
 """Fig. 4 of the letter: a settled orbit in time, and its spectrum.
-One of its collisions is shown from close by.
 
 Claim (letter 1996, Fig. 4): at F/F_g - 1 = 0.013 the orbit has period 4, and at impact "a multitude of
 high-order modes is excited in the beam".
@@ -37,7 +36,7 @@ from studies.experiment.time_trace import film as filming
 from studies.experiment.time_trace.model import Peak, close_up, lines_of, peaks_of, trace_of
 from studies.physics.descriptions import word
 from studies.shell.film import MOST_FRAMES
-from studies.shell.options import Within
+from studies.shell.options import HERTZ, Within
 from studies.shell.run import Verdict
 from studies.shell.scene import Scene, beam_at, model_of, own_frequency, require_drive_below
 from studies.shell.study import Run, study
@@ -74,7 +73,7 @@ def time_trace(
     frequency: Annotated[
         float | None,
         "drive frequency (Hz); by default 21.5, or that of the scene with this f T, or its middle one",
-        Within(0, 1e7, "Hz", open=True),
+        HERTZ,
     ] = None,
     film: Annotated[bool, "film one period of the orbit"] = False,
     frames: Annotated[int, "frames of the film", Within(1, MOST_FRAMES)] = 240,

@@ -144,9 +144,7 @@ def identify(
         float | None, "noise of the read-out, where it is known", Within(0, 1e9, "µm", open=True)
     ] = None,
     delay_ms: Annotated[
-        float | None,
-        "two_parameters: the delay, or where its fit starts (default: T/136)",
-        Within(0, 1e9, "ms"),
+        float | None, "two_parameters: delay, or start of its fit (default: T/136)", Within(0, 1e9, "ms")
     ] = None,
     coverage: Annotated[int | None, "also fit so many synthetic records of each kind: true errors?"] = None,
     next: Annotated[tuple[str, ...], "parameters of the next measurement (example: T, tau, delay)"] = (),

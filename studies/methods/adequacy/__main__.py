@@ -1,5 +1,4 @@
 """How detailed the model must be for each question.
-It varies level, mesh, modes, residual mode and contact law.
 
 Question: what is the least model for the period that is born at grazing, a collision, or the hysteresis?
 

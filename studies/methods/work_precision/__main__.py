@@ -1,5 +1,4 @@
 """Error against cost of every method for impacts.
-Steps and tolerances vary.
 
 Claim: on these problems no outside solver and no method with a time step is both faster and as accurate as
 the exact method that `simulate` takes by default; the letter's own scheme, the same flights with a search
