@@ -7,6 +7,7 @@ import argparse
 import contextlib
 import inspect
 import os
+import re
 import sys
 import types
 import typing
@@ -72,6 +73,7 @@ class Parser(argparse.ArgumentParser):
             allow_abbrev=False,
             formatter_class=argparse.RawDescriptionHelpFormatter,
         )
+        self._negative_number_matcher = re.compile(r"-\.?\d")  # -1e-3 is a number, too
         self.add_argument("--json", action="store_true", help="print the summary as one JSON object")
 
     def error(self, message: str) -> NoReturn:

@@ -65,7 +65,6 @@ class OutsideSolver(Integrator):
     name: ClassVar[str] = "outside"
     order: ClassVar[float] = math.nan
     laws: ClassVar[tuple[int, ...]] = (NewtonRestitution.code, LinearContact.code, HertzContact.code)
-    limit: ClassVar[str] = "none to choose: the error control shortens the steps"
     source: ClassVar[str] = (
         "P. Virtanen et al., Nature Methods 17 (2020) 261; F. Biscani, D. Izzo, Mon. Not. R. Astron. Soc. "
         "504 (2021) 2614; A. C. Hindmarsh et al., ACM Trans. Math. Softw. 31 (2005) 363"

@@ -1,5 +1,4 @@
 """Which springs the words "U shaped" allow, and what they change.
-The springs have one free period. Twist modes and the flat U as a plate are included.
 
 Claim (letter 1996, Fig. 1 and text): the spring is U shaped to suppress torsional modes. The words allow
 three shapes: legs side by side in the plane of the sheet, a channel, and a strip folded into a U. A plain
