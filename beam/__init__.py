@@ -30,6 +30,8 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+__version__ = "0.9.0"
+
 if TYPE_CHECKING:
     from .assembly import Discretization, assemble, default_elements
     from .backbone import Backbone, backbone_coefficient

@@ -88,6 +88,8 @@ from contact.simulation import simulate
 from contact.stop import Stop
 from contact.trajectory import ImpactKind, Impacts, Regime, State, Trajectory
 
+__version__ = "0.9.0"
+
 __all__ = sorted(
     name for name, one in globals().items() if getattr(one, "__module__", "").startswith("contact.")
 )

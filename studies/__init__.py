@@ -32,6 +32,8 @@ import sys
 from itertools import pairwise
 from pathlib import Path
 
+__version__ = "0.9.0"
+
 ROOT = Path(__file__).resolve().parent.parent
 """The folder in which `beam`, `contact` and `studies` lie side by side."""
 

@@ -9,18 +9,25 @@ from collections.abc import Sequence
 from itertools import pairwise
 from pathlib import Path
 
-from studies import start_as_program
-from studies.shell.programs import MAIN, WRONG_USE, chapters_in_words, module_of, names, studies, unknown
+from studies import __version__, start_as_program
+from studies.shell import programs
+from studies.shell.programs import COMMAND, DONE, MAIN, chapters_in_words, module_of, names, tell
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run what the arguments name, those of the command line by default; returns the exit code."""
     given = list(sys.argv[1:] if arguments is None else arguments)
+    if given == ["--version"]:
+        tell(f"grazing-spring {__version__}", sys.stdout)
+        return DONE
+    if given in (["--list"], ["list"]):
+        tell(chapters_in_words(), sys.stdout)
+        return DONE
     if given and not given[0].startswith("-"):
         return run_program(given[0], given[1:])
-    if given == ["--list"]:
-        print(chapters_in_words())
-        return 0
+    if "--all" not in given and {"--help", "-h"}.intersection(given):
+        tell(programs.overview(), sys.stdout)
+        return DONE
     if "--all" in given and "--dump-scene" not in given:
         from studies.shell import every_study
 
@@ -31,14 +38,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def run_program(name: str, arguments: Sequence[str]) -> int:
     """Run the program of this name; an unknown one is answered with the chapters."""
     if name not in names():
-        print(f"python -m studies: {unknown(name)}\n{chapters_in_words()}", file=sys.stderr)
-        return WRONG_USE
+        print(f"{COMMAND}: {programs.unknown(name)}\n{chapters_in_words()}", file=sys.stderr)
+        return programs.WRONG_USE
     if name == "tour":
         sys.argv[1:] = arguments
         runpy.run_module("studies.tour", run_name="__main__")
         return 0
     module = importlib.import_module(module_of(name))
-    program = getattr(module, name) if name in studies() else module
+    program = getattr(module, name) if name in programs.studies() else module
     return int(program.main(arguments))
 
 
@@ -47,8 +54,8 @@ def main_job(arguments: Sequence[str]) -> int:
     from studies.shell.page import told_page
 
     main_study = getattr(importlib.import_module(module_of(MAIN)), MAIN)
-    code = int(main_study.main(arguments, command="python -m studies"))
-    if code in (0, 3) and not {"--help", "-h", "--dump-scene"}.intersection(arguments):
+    code = int(main_study.main(arguments, command=COMMAND))
+    if code in (0, 3) and "--dump-scene" not in arguments:
         out = next((b for a, b in pairwise(arguments) if a == "--out"), "results")
         out = next((word.partition("=")[2] for word in arguments if word.startswith("--out=")), out)
         print(told_page(Path(out)), file=sys.stderr)

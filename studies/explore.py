@@ -1,4 +1,4 @@
-"""A window to explore: drive frequency, excess and restitution on sliders, for a lecture or a first look.
+"""A window with sliders for drive frequency, excess and restitution.
 
 For map, Eq. (1), Eq. (1) with two parameters (the rebound law of the beam) or beam, while one drags: the tip
 over time with its impacts, the strobe points, and the orbit diagram around the present excess F/F_g - 1,
@@ -33,6 +33,7 @@ from studies.physics.one_mode import with_restitution
 from studies.shell.executors import say
 from studies.shell.options import Parser, add_scene, tool
 from studies.shell.plotting import DOWN, EXCESS, GUIDE, INCH, PAGE, UP, house_style, points, strobe_points
+from studies.shell.programs import COMMAND, needs
 from studies.shell.scene import Scene, harmonic, model_of, read_scene
 
 KINDS = {"map": (61, 600), "Eq. (1)": (41, 600), "two parameters": (41, 600), "beam": (21, 200)}
@@ -140,10 +141,10 @@ def explore(given: Any) -> tuple[str, dict[str, object]]:
         if type(figure.canvas.manager) is FigureManagerBase:
             raise ImportError("matplotlib found none")
     except (ImportError, RuntimeError) as error:  # the second where a web page needs another package
-        needs = "a window needs a display, and a toolkit such as python3-tk"
-        if package := getattr(error.__cause__ or error, "name", None):
-            needs = f"matplotlib's {matplotlib.get_backend()} needs the package {package}"
-        raise InvalidValue(f"{needs}: {error}") from error
+        lack = "a window needs a display, and a toolkit such as python3-tk"
+        if getattr(error.__cause__ or error, "name", None) == "tornado":
+            lack = needs(f"matplotlib's {matplotlib.get_backend()}", "tornado")
+        raise InvalidValue(f"{lack}: {error}") from error
     with house_style():
         window = Window(scene, figure)
         with suppress(KeyboardInterrupt):
@@ -153,6 +154,6 @@ def explore(given: Any) -> tuple[str, dict[str, object]]:
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Explore from the command line; returns 0, or 2 for wrong use and where there is no display."""
-    parser = Parser("python -m studies explore", __doc__ or "")
+    parser = Parser(f"{COMMAND} explore", __doc__ or "")
     add_scene(parser)
     return tool(parser, argv, explore)

@@ -1,4 +1,4 @@
-"""Everything that the studies stored, as one page to read, print and pass on.
+"""One page with the results of all studies, to read, print and pass on.
 
 Gathered: the answers to the questions that the letter raises, the letter point by point, for
 each study its account, figures and tables, what was assumed, and versions. Nothing is computed and no result
@@ -17,6 +17,7 @@ from pathlib import Path
 from studies.shell.options import Parser, tool
 from studies.shell.page import in_words, write_page
 from studies.shell.page.documentation import module_names, write_site
+from studies.shell.programs import COMMAND
 
 
 def report(given: Namespace) -> tuple[str, Mapping[str, object]]:
@@ -33,7 +34,7 @@ def report(given: Namespace) -> tuple[str, Mapping[str, object]]:
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Write the page; returns 0, or 2 for wrong use and where there are no results."""
-    parser = Parser("python -m studies report", __doc__ or "")
+    parser = Parser(f"{COMMAND} report", __doc__ or "")
     parser.add_argument("--out", type=Path, default=Path("results"), metavar="DIR", help="folder of results")
     parser.add_argument("--site", action="store_true", help="write the documentation, too (needs pdoc)")
     return tool(parser, argv, report)

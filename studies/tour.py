@@ -1,4 +1,4 @@
-"""From a brass strip to an orbit of period four: the whole package in one script, cell by cell.
+"""The whole package in one short script, from a strip to an orbit.
 
 The letter's Fig. 4 (1996): a U with legs of 13 cm, driven at 21.50 Hz, 1.3 % above grazing. Each cell prints
 what it found. Command: python -m studies tour, or cell by cell in an editor that knows `# %%`. It has no

@@ -5,19 +5,25 @@ from __future__ import annotations
 import ast
 import importlib
 import json
+import os
+import re
 import shutil
 import subprocess
 import sys
+import sysconfig
+import tarfile
+import tomllib
 from collections.abc import Iterator
 from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
 
-from studies.shell.programs import CHAPTERS, chapter
+from studies.shell.programs import CHAPTERS, chapter, needs
 
 ROOT = Path(__file__).resolve().parent.parent
 PACKAGES = ("beam", "contact", "studies")
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
 DOORS = ("beam", "beam.space", "contact", "contact.orbits", "contact.integrators")
 """Where studies get names from: what these export, and nothing behind them."""
 
@@ -187,19 +193,57 @@ def test_public_names_exist_and_type_checkers_see_them(door):
     assert set(module.__all__) <= told
 
 
+def test_one_version_everywhere():
+    versions = {PROJECT["version"], *(importlib.import_module(package).__version__ for package in PACKAGES)}
+    versions |= set(re.findall(r"^version: (.*)$", (ROOT / "CITATION.cff").read_text(), re.MULTILINE))
+    assert versions == set(re.findall(r"^## (\S+) \(", (ROOT / "CHANGELOG.md").read_text(), re.MULTILINE))
+
+
+def test_hints_name_the_packages_of_the_extras():
+    extras = PROJECT["optional-dependencies"]
+    wanted = {re.split("[>=]", each)[0] for name in extras.keys() - {"test"} for each in extras[name]}
+    text = "".join(path.read_text() for path in modules("studies").values())
+    assert set(" ".join(re.findall(r'needs\(f?"[^"]*", "([^"]*)"\)', text)).split()) == wanted
+    assert needs("a site", "pdoc") == "a site needs pdoc: python -m pip install pdoc"
+
+
+def test_the_console_command_calls_itself_by_its_own_name(tmp_path):
+    code = "import sys; sys.argv[0] = 'grazing-spring'; from studies.__main__ import main; "
+    code += "sys.exit([main([word]) for word in ('--help', 'nonsense', 'report')] != [0, 2, 2])"
+    command, env = [sys.executable, "-c", code], os.environ | {"PYTHONPATH": str(ROOT)}
+    done = subprocess.run(command, cwd=tmp_path, env=env, capture_output=True, text=True, check=True)
+    assert "python -m studies" not in done.stdout + done.stderr and "run grazing-spring first" in done.stderr
+
+
 @pytest.mark.slow
-def test_what_is_shipped_has_the_scenes_and_the_types(tmp_path):
-    """The content of a wheel: what setuptools' build_py copies."""
-    source, built = tmp_path / "source", tmp_path / "built"
-    for package in PACKAGES:
-        shutil.copytree(ROOT / package, source / package, ignore=shutil.ignore_patterns("__pycache__"))
-    shutil.copy(ROOT / "pyproject.toml", source)
-    (source / "README.md").write_text("")
-    command = [sys.executable, "-c", "import setuptools; setuptools.setup()", "-q", "build_py"]
-    subprocess.run([*command, "--build-lib", str(built)], cwd=source, check=True, capture_output=True)
-    shipped = {path.relative_to(built).as_posix() for path in built.rglob("*") if path.is_file()}
-    patterns = ("*.py", "py.typed", "*.toml", "*.j2")
-    here = {path for package in PACKAGES for pattern in patterns for path in (ROOT / package).rglob(pattern)}
-    assert {path.relative_to(ROOT).as_posix() for path in here} <= shipped
-    assert {"beam/py.typed", "contact/py.typed", "studies/py.typed", "studies/scenes/letter.toml"} <= shipped
-    assert not any(name.startswith(("tests", "results")) for name in shipped)
+def test_the_source_archive_is_whole_and_its_wheel_runs_from_an_empty_folder(tmp_path):
+    source, place, empty = (tmp_path / name for name in ("source", "environment", "empty"))
+    left = shutil.ignore_patterns(".git", ".venv", "results", "build", "dist", "__pycache__", "*.egg-info")
+    shutil.copytree(ROOT, source, ignore=left)
+    tops = {*PACKAGES, *"tests docs .ci CHANGELOG.md CITATION.cff CONTRIBUTING.md constraints.txt".split()}
+    here = {path.relative_to(source) for top in tops for path in [source / top, *(source / top).rglob("*")]}
+    (source / "tests" / "kernel.nbi").touch()
+    empty.mkdir()
+    env = os.environ.copy()
+
+    def run(*command: object, cwd: Path = empty) -> str:
+        words = list(map(str, command))
+        return subprocess.run(words, cwd=cwd, env=env, check=True, stdout=subprocess.PIPE, text=True).stdout
+
+    run(sys.executable, "-m", "build", "--no-isolation", cwd=source)
+    env.pop("PYTHONPATH", None)
+    (archive,), (wheel,) = (source / "dist").glob("*.tar.gz"), (source / "dist").glob("*.whl")
+    with tarfile.open(archive) as opened:
+        shipped = {Path(*Path(name).parts[1:]) for name in opened.getnames()}
+    assert {path for path in here if path.exists()} <= shipped
+    assert not {path for path in shipped if path.suffix in (".nbi", ".nbc", ".pyc")}
+    run(sys.executable, "-m", "venv", "--without-pip", place)
+    python, program = place / "bin" / "python", place / "bin" / "grazing-spring"
+    run(sys.executable, "-m", "pip", "--python", python, "install", "--no-deps", "--no-index", wheel)
+    (site,) = place.glob("lib/*/site-packages")
+    (site / "dependencies.pth").write_text(sysconfig.get_path("purelib"))
+    assert run(python, "-c", "import beam; print(beam.__file__)").startswith(str(site))
+    assert run(program, "--version") == f"grazing-spring {PROJECT['version']}\n"
+    run(program, "transitions", "--quick")
+    manifest = json.loads((empty / "results" / "transitions" / "manifest.json").read_text())
+    assert (manifest["status"], manifest["command"]) == ("done", "grazing-spring transitions --quick")

@@ -12,21 +12,18 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from beam import InvalidValue
+from studies.shell.options import Within
 
-LARGEST = 0.02
-"""Most noise, and the largest step of a scan [1]."""
+SMALL, TIMES = Within(0, 0.02, open=True), Within(0, 1e9, "s")
+"""Of noise and of the step of a scan; of the correlation time of a drift."""
+
+DRIFTS = (0.0, 100.0, 3600.0)
+"""Correlation times that are looked at [s], 0 for white noise."""
 
 QUIET = 64
 """Drive periods without impact beyond which the motion counts as p_1: longer than any period that counts."""
 
 Array = NDArray[np.float64]
-
-
-def require_small(name: str, value: float) -> None:
-    """Refuse a change of the amplitude that is not small."""
-    if not 0.0 < value <= LARGEST:
-        raise InvalidValue(f"{name} is {value:g} [1]; it must be above 0, and at most {LARGEST:g}")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -43,11 +40,6 @@ class DriveNoise:
 
     stability: float
     correlation_s: float = 0.0
-
-    def __post_init__(self) -> None:
-        require_small("stability", self.stability)
-        if self.correlation_s < 0.0:
-            raise InvalidValue(f"correlation_times holds {self.correlation_s:g} s; it must be 0 or more")
 
     @property
     def name(self) -> str:

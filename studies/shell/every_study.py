@@ -37,9 +37,11 @@ from studies.shell.options import parser_of
 from studies.shell.page import told_page
 from studies.shell.programs import (
     ALL,
+    COMMAND,
     DONE,
     FAILED_CELLS,
     INTERRUPTED,
+    by_own_name,
     module_of,
     perform,
     run_time_of,
@@ -90,15 +92,15 @@ def run_in_turn(
 
     expected = {name: round(known[name][quick]) for name in plan}
     say(f"{len(plan)} studies to run, about {duration(sum(expected.values()))}")
-    with ExitStack() as after, progress("all studies, in seconds", sum(expected.values())) as tick:
+    with ExitStack() as after, progress("all studies", sum(expected.values()), "s") as tick:
         for number in (signal.SIGINT, signal.SIGTERM):
             if signal.getsignal(number) is not signal.SIG_IGN:
                 after.callback(signal.signal, number, signal.signal(number, signalled))
         for name, arguments in plan.items():
             if stopped:
                 break
-            label, begun = f"python -m studies {name}", time.monotonic()
-            command, quiet = [sys.executable, *label.split()[1:], *arguments], subprocess.DEVNULL
+            label, begun = f"{COMMAND} {name}", time.monotonic()
+            command, quiet = [sys.executable, "-m", "studies", name, *arguments], subprocess.DEVNULL
             with tempfile.TemporaryFile("w+", encoding="utf-8", errors="replace") as log:
                 child = subprocess.Popen(
                     command, stdin=quiet, stdout=log, stderr=log, text=True, process_group=0
@@ -109,7 +111,8 @@ def run_in_turn(
                 if codes[name] == DONE:
                     took[name] = time.monotonic() - begun
                 log.seek(0)
-                last = next((line for line in reversed(log.read().splitlines()) if line.strip()), "")
+                lines = by_own_name(log.read()).splitlines()
+                last = next((line for line in reversed(lines) if line.strip()), "")
             say(last if last.startswith(label) else f"{label}: exit code {codes[name]}; {last.strip()}")
     return codes, took, stopped
 
@@ -138,7 +141,7 @@ def run_all(given: Namespace, arguments: Sequence[str], output: TextIO) -> int:
     failed = [name for name, code in codes.items() if code != DONE]
     code = INTERRUPTED if stopped else FAILED_CELLS if failed else DONE
     status = {DONE: "done", FAILED_CELLS: "finished with failed studies", INTERRUPTED: "interrupted"}[code]
-    again = shlex.join(["python", "-m", "studies", *(word for word in arguments if word != "--fresh")])
+    again = shlex.join([*COMMAND.split(), *(word for word in arguments if word != "--fresh")])
     rest = f"; go on with: {again}" if stopped else f": {', '.join(failed)}" if failed else ""
     say(f"{ALL}: {status} after {duration(time.monotonic() - begun)}{rest}")
     say(told_page(Path(given.out)))

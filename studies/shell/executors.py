@@ -15,6 +15,7 @@ from contextlib import contextmanager
 from datetime import timedelta
 
 from beam import InvalidValue
+from studies.shell.programs import needs
 
 INTERVAL = 30.0
 """Seconds between two lines of progress where there is no terminal."""
@@ -35,45 +36,45 @@ def duration(seconds: float) -> str:
 
 
 @contextmanager
-def progress(label: str, total: int | None = None) -> Iterator[Callable[..., None]]:
+def progress(label: str, total: int, unit: str) -> Iterator[Callable[..., None]]:
     """Count steps: a bar with rate and time left on a terminal, a line every half minute elsewhere.
 
-    Yields a function that counts one step, or as many as it is given, from any thread.
+    Yields a function that counts one step, or as many as it is given, from any thread. `unit` names the steps
+    in the plural; where it is s, the seconds that the work takes, the total is an estimate.
     """
     from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+    from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
-    columns = (
-        TextColumn("{task.description}"),
-        BarColumn(),
-        MofNCompleteColumn(),
-        TextColumn("{task.fields[rate]}"),
-        TimeRemainingColumn(),
-    )
+    words = TextColumn("{task.description}"), TextColumn("{task.fields[done]}")
+    columns = words[0], BarColumn(), words[1], TimeRemainingColumn()
     told, lock, terminal = time.monotonic(), threading.Lock(), sys.stderr.isatty()
     console = Console(file=sys.stderr)
     with Progress(*columns, console=console, disable=not terminal, speed_estimate_period=math.inf) as bar:
-        task = bar.add_task(label, total=total, rate="")
+        task = bar.add_task(label, total=total, done="")
 
         def count(steps: int = 1) -> None:
             nonlocal told
             with lock:
                 bar.advance(task, steps)
                 now, known = time.monotonic(), bar.tasks[0]
-                bar.update(task, rate=_rate(known.speed))
+                done = _done(known.completed, total, unit, known.speed)
+                bar.update(task, done=done)
                 if not terminal and now - told >= INTERVAL:
                     told, left = now, known.time_remaining
                     ahead = "" if left is None else f", {duration(left)} left"
-                    say(f"{label}: {known.completed:g} of {total or '?'}, {_rate(known.speed)}{ahead}")
+                    say(f"{label}: {done}{ahead}")
 
         yield count
 
 
-def _rate(speed: float | None) -> str:
-    """Steps per second, or seconds per step when that reads better."""
+def _done(completed: float, total: int, unit: str, speed: float | None) -> str:
+    """How many of the steps are done, and steps per second or seconds per step, as it reads better."""
+    if unit == "s":
+        return f"{completed:g} of about {total} s"
+    words = f"{completed:g} of {total} {unit}"
     if not speed:
-        return ""
-    return f"{speed:.3g} per s" if speed >= 1.0 else f"{1.0 / speed:.3g} s each"
+        return words
+    return f"{words}, {speed:.3g} per s" if speed >= 1.0 else f"{words}, {1.0 / speed:.3g} s each"
 
 
 def require_place(place: str) -> str:
@@ -116,13 +117,11 @@ def _quiet() -> None:
 
 @contextmanager
 def _cluster(address: str) -> Iterator[Executor]:
-    """The workers of a dask scheduler, which must have the same program and packages (extra `cluster`)."""
+    """The workers of a dask scheduler, which must have the same program and packages."""
     try:
         from distributed import Client
     except ImportError as error:
-        raise InvalidValue(
-            "a cluster needs the package distributed: python -m pip install 'grazing-spring[cluster]'"
-        ) from error
+        raise InvalidValue(needs("a cluster", "distributed")) from error
     try:
         client = Client(f"tcp://{address}", timeout=PATIENCE)
     except (OSError, ValueError) as error:

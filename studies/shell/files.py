@@ -27,19 +27,25 @@ from uuid import uuid4
 
 import numpy as np
 
-from studies import ROOT
+from studies import ROOT, __version__
 
 SCHEMA = 2
 """Number of the layout of summary.json, manifest.json and the JSON on standard output."""
 
 
 def make_folder(folder: Path) -> Path:
-    """The folder, made if need be and seen to accept files; better told before a computation than after."""
+    """The folder, made if need be."""
     with told(f"results cannot be written to the folder {folder}"):
         folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=folder):
-            pass
     return folder
+
+
+def require_writable(folder: Path) -> None:
+    """Refuse a folder that takes no files or cannot be made, before a computation; nothing is left there."""
+    with told(f"results cannot be written to the folder {folder}"):
+        there = next(path for path in (folder, *folder.parents) if path.exists())
+        with tempfile.TemporaryFile(dir=there):
+            pass
 
 
 def write_atomically(path: Path, content: bytes) -> Path:
@@ -126,9 +132,10 @@ def fingerprint(scene: object, settings: Mapping[str, object]) -> str:
 
 def versions() -> dict[str, str]:
     """Versions of Python and of the packages that this one declares and that are installed."""
-    found, own = {"python": platform.python_version()}, "grazing-spring"
+    own = "grazing-spring"
+    found = {"python": platform.python_version(), own: __version__}
     with suppress(PackageNotFoundError):
-        for name in [own, *(re.split(r"[^\w.-]", each)[0] for each in requires(own) or ())]:
+        for name in (re.split(r"[^\w.-]", each)[0] for each in requires(own) or ()):
             with suppress(PackageNotFoundError):
                 found[name] = version(name)
     return found

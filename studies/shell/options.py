@@ -6,38 +6,60 @@ from __future__ import annotations
 import argparse
 import contextlib
 import inspect
-import math
 import os
+import re
 import sys
 import types
 import typing
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from difflib import get_close_matches
-from pathlib import Path
+from functools import partial
 from typing import Annotated, Literal, NoReturn, TextIO, Union, get_args, get_origin
 
 from beam import InvalidValue
 from studies.shell.executors import require_place
 from studies.shell.files import SCHEMA
-from studies.shell.programs import DONE, perform, tell
+from studies.shell.programs import DONE, by_own_name, perform, tell
 
 Answer = Mapping[str, object]
 
 POSITIONAL = "positional"
 """Beside the words of an argument: it needs no name on the command line."""
 
-
 MOST_CELLS = 1_000_000
 """Bound on the cells of a study, and on a count on the command line. At 1 ms a cell, a million take a quarter
 of an hour, and their numbers fit into memory."""
 
 
-def require_cells(option: str, value: object, count: float) -> None:
-    """Refuse an option that makes more cells than a study computes."""
-    if not count <= MOST_CELLS:
-        raise InvalidValue(
-            f"{option} is {value}, which makes {count:.3g} cells; at most {MOST_CELLS:g} are computed"
-        )
+@dataclass(frozen=True)
+class Within:
+    """Beside the words of an argument: its numbers are `low` or more, or above it if `open`, to `high`."""
+
+    low: float = -sys.float_info.max
+    high: float = sys.float_info.max
+    unit: str = ""
+    open: bool = False
+
+    def __str__(self) -> str:
+        if self.high == sys.float_info.max:
+            return "finite"
+        first = f"above {self.low:g} and at most" if self.open else f"from {self.low:g} to"
+        return f"{first} {self.high:.7g} {self.unit}".rstrip()
+
+    def read(self, kind: type[int] | type[float], text: str) -> float:
+        """The number in a text, of this kind and within these bounds."""
+        with contextlib.suppress(ValueError, OverflowError):
+            number = kind(text if text.isascii() and "_" not in text else "")
+            if self.low < number <= self.high or (number == self.low and not self.open):
+                return number
+        words = "a whole number" if kind is int else "a number"
+        raise argparse.ArgumentTypeError(f"must be {words} {self}, not {text[:40]!r}")
+
+
+HERTZ = Within(0, 1e7, "Hz", open=True)
+BOUNDS = {int: Within(1, MOST_CELLS), float: Within()}
+"""Of a drive frequency; of numbers that are not marked."""
 
 
 class Parser(argparse.ArgumentParser):
@@ -46,11 +68,12 @@ class Parser(argparse.ArgumentParser):
     def __init__(self, command: str, account: str) -> None:
         super().__init__(
             prog=command,
-            description=account,
+            description=by_own_name(account),
             usage=f"{command} [options]",
             allow_abbrev=False,
             formatter_class=argparse.RawDescriptionHelpFormatter,
         )
+        self._negative_number_matcher = re.compile(r"-\.?\d")  # -1e-3 is a number, too
         self.add_argument("--json", action="store_true", help="print the summary as one JSON object")
 
     def error(self, message: str) -> NoReturn:
@@ -93,7 +116,8 @@ def parser_of(command: str, account: str) -> Parser:
     runs = parser.add_argument_group("how it runs, and where the results go").add_argument
     cores = os.cpu_count() or 1
     runs("--quick", action="store_true", help="a small form of the study, for a first look")
-    runs("--workers", type=_count, default=cores, metavar="N", help="threads or processes (default: cores)")
+    count = partial(BOUNDS[int].read, int)
+    runs("--workers", type=count, default=cores, metavar="N", help="threads or processes (default: cores)")
     runs("--executor", default="", metavar="URL", help="threads (default), processes, dask://HOST")
     runs("--out", type=_folder, default="results", metavar="DIR", help="folder of all results")
     return parser
@@ -119,7 +143,8 @@ def tool(parser: Parser, argv: Sequence[str] | None, work: Callable[..., tuple[s
 def add_options(parser: Parser, function: Callable[..., object]) -> dict[str, object]:
     """Make options of the keyword-only arguments of a study; returns their defaults.
 
-    One annotated with `POSITIONAL` as well is given without a name; `tuple[T, ...]` takes one value or more.
+    One annotated with `POSITIONAL` as well is given without a name, and one with `Within` has these bounds;
+    `tuple[T, ...]` takes one value or more.
     """
     group = parser.add_argument_group("options of this study")
     hints = typing.get_type_hints(function, include_extras=True)
@@ -127,7 +152,7 @@ def add_options(parser: Parser, function: Callable[..., object]) -> dict[str, ob
     for name, entry in inspect.signature(function).parameters.items():
         if entry.kind is not inspect.Parameter.KEYWORD_ONLY:
             continue
-        kind, words, marks = hints[name], "", list[str]()
+        kind, words, marks = hints[name], "", list[object]()
         if get_origin(kind) is Annotated:
             kind, words, *marks = get_args(kind)
         if get_origin(kind) in (Union, types.UnionType):  # T | None
@@ -146,18 +171,14 @@ def add_options(parser: Parser, function: Callable[..., object]) -> dict[str, ob
             if get_origin(kind) is tuple:
                 several = Ellipsis in get_args(kind)
                 about["nargs"], kind = "+" if several else len(get_args(kind)), get_args(kind)[0]
-            about |= {"type": READERS[kind], "metavar": kind.__name__.upper()}
+            bounds = next((mark for mark in marks if isinstance(mark, Within)), BOUNDS.get(kind))
+            reader = partial(bounds.read, kind) if bounds else kind
+            about |= {"type": reader, "metavar": kind.__name__.upper()}
+            about["help"] = f"{told}; {bounds}" if bounds in marks else told
             if POSITIONAL in marks:
                 flag, about = name, {**about, "nargs": "?", "metavar": name.upper(), "default": default}
         group.add_argument(flag, **about)  # type: ignore[arg-type]
     return defaults
-
-
-def _count(text: str) -> int:
-    """A whole number from 1 to `MOST_CELLS`."""
-    if not (text.isascii() and text.isdigit() and len(text) < 20 and 1 <= int(text) <= MOST_CELLS):
-        raise argparse.ArgumentTypeError(f"must be a whole number from 1 to {MOST_CELLS}, not {text[:40]!r}")
-    return int(text)
 
 
 def _folder(text: str) -> str:
@@ -165,14 +186,3 @@ def _folder(text: str) -> str:
     if not text.strip():
         raise argparse.ArgumentTypeError(f"must be a folder, not {text!r}")
     return text
-
-
-def _finite(text: str) -> float:
-    """A finite number."""
-    with contextlib.suppress(ValueError):
-        if math.isfinite(float(text)):
-            return float(text)
-    raise argparse.ArgumentTypeError(f"must be a finite number, not {text!r}")
-
-
-READERS: Mapping[type, Callable[[str], object]] = {int: _count, float: _finite, str: str, Path: Path}

@@ -42,8 +42,17 @@ STUDY = re.compile(r"^@study\(", re.MULTILINE)
 MAIN = "transitions"
 """What `python -m studies` runs."""
 
-ALL = "python -m studies --all"
+MODULE = "python -m studies"
+COMMAND = "grazing-spring" if Path("".join(sys.argv[:1])).stem == "grazing-spring" else MODULE
+"""What runs the main job, and with a NAME any program: as this process was started."""
+
+ALL = f"{COMMAND} --all"
 """What runs every study."""
+
+
+def needs(what: str, packages: str) -> str:
+    """The sentence on missing packages of an extra, with the command that installs them."""
+    return f"{what} needs {packages}: python -m pip install {packages}"
 
 
 def chapter(name: str) -> dict[str, Path]:
@@ -86,9 +95,24 @@ def chapters_in_words() -> str:
     return "\n\n".join(blocks)
 
 
+def overview() -> str:
+    """The answer to --help without a name: the programs, and where their options are listed."""
+    return f"""{chapters_in_words()}
+
+{COMMAND} NAME           run one of them; its options: {COMMAND} NAME --help
+{COMMAND}                run {MAIN}; its options: {COMMAND} {MAIN} --help
+{COMMAND} --all          run every study; its options: {ALL} --help
+{COMMAND} --dump-scene   print the scene of the letter, to be changed for another spring"""
+
+
+def by_own_name(text: str) -> str:
+    """The text with the command as this process was started."""
+    return text.replace(MODULE, COMMAND)
+
+
 def account_of(name: str) -> str:
     """What a study says of itself: its docstring."""
-    return ast.get_docstring(ast.parse(programs()[name].read_text("utf-8"))) or ""
+    return by_own_name(ast.get_docstring(ast.parse(programs()[name].read_text("utf-8"))) or "")
 
 
 def run_times(table: Path = FOLDER / "shell" / "run_times.csv") -> dict[str, tuple[float, float]]:
@@ -148,9 +172,9 @@ def refuse_arguments(name: str, account: str) -> None:
     """For a script without options: --help prints its account, any other argument is refused."""
     if as_program() and (words := sys.argv[1:]):
         if words[0] in ("-h", "--help"):
-            tell(account, sys.stdout)
+            tell(by_own_name(account), sys.stdout)
             raise SystemExit(DONE)
-        print(f"python -m studies {name}: {words[0]} is refused; it takes no options", file=sys.stderr)
+        print(f"{COMMAND} {name}: {words[0]} is refused; it takes no options", file=sys.stderr)
         raise SystemExit(WRONG_USE)
 
 

@@ -39,6 +39,7 @@ from studies.shell.files import (
     git_state,
     json_text,
     make_folder,
+    require_writable,
     versions,
     write_atomically,
 )
@@ -74,7 +75,7 @@ class Run:
     closed: bool = False
 
     def __post_init__(self) -> None:
-        make_folder(self.folder)
+        require_writable(self.folder)
         self._begun, self._date = time.perf_counter(), datetime.now(UTC)
         # of the scene as it was given, before modes are chosen
         self._fingerprint = fingerprint(self.scene.values(), {"quick": self.quick, **self.options})
@@ -85,17 +86,20 @@ class Run:
     # what a person sees
 
     say = staticmethod(say)
-    progress = staticmethod(progress)
+
+    def progress(self, unit: str, total: int) -> AbstractContextManager[Callable[..., None]]:
+        """Count what `unit` names, in the plural."""
+        return progress(self.study, total, unit)
 
     def warn(self, sentence: str) -> None:
         """Print a warning to standard error, and keep it in the summary."""
         self.warnings = [*self.warnings, sentence]
         self.say(f"warning: {sentence}")
 
-    def track(self, items: Iterable[T], label: str) -> Iterator[T]:
+    def track(self, items: Iterable[T], unit: str) -> Iterator[T]:
         """The items one after the other, each counted when it has been dealt with."""
         known = list(items)
-        with self.progress(label, len(known)) as tick:
+        with self.progress(unit, len(known)) as tick:
             for item in known:
                 yield item
                 tick()
@@ -106,22 +110,22 @@ class Run:
         """The executor that the command line names."""
         return pool_of(self.executor, self.workers)
 
-    def map(self, function: Callable[[S], T], items: Iterable[S], label: str) -> list[T]:
+    def map(self, function: Callable[[S], T], items: Iterable[S], unit: str) -> list[T]:
         """[function(item) for item in items] on the executor, in order, with progress."""
         known = list(items)
-        with self.pool() as pool, self.progress(label, len(known)) as tick:
+        with self.pool() as pool, self.progress(unit, len(known)) as tick:
             futures = [pool.submit(function, item) for item in known]
             for future in futures:
                 future.add_done_callback(lambda _: tick())
             return [future.result() for future in futures]
 
-    def attempt(self, function: Callable[[S], T], items: Iterable[S], label: str) -> list[T | None]:
+    def attempt(self, function: Callable[[S], T], items: Iterable[S], unit: str) -> list[T | None]:
         """Like `map`; an item that ends with a ContactError or a Refusal counts as failed, and is None."""
         known = list(items)
-        tried = self.map(partial(_tried, function), known, label)
+        tried = self.map(partial(_tried, function), known, unit)
         for item, (_, error) in zip(known, tried, strict=True):
             if error:
-                self.failed(f"{label}, {item}", error)
+                self.failed(f"{unit}, {item}", error)
         return [found for found, _ in tried]
 
     def choose_modes(
@@ -152,7 +156,7 @@ class Run:
             raise ValueError(f"a result needs a plain file name, not {name!r}")
         if name not in self.files:
             self.files.append(name)
-        return self.folder / name
+        return make_folder(self.folder) / name
 
     def text(self, name: str, text: str) -> Path:
         """A text file under its full name."""
@@ -197,7 +201,7 @@ class Run:
         """NAME.png and NAME.pdf; the caption is what the page writes below it."""
         from studies.shell.plotting import save  # matplotlib is slow to import
 
-        for path in save(figure, self.folder, name):
+        for path in save(figure, make_folder(self.folder), name):
             self.path(path.name)
         self._captions[f"{name}.png"] = caption
 

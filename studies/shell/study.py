@@ -31,6 +31,7 @@ from typing import Any, TextIO, cast
 
 from beam import SuspiciousValue
 from contact import ContactError
+from studies.shell import programs
 from studies.shell.executors import duration
 from studies.shell.files import SCHEMA
 from studies.shell.options import add_options, parser_of
@@ -90,7 +91,7 @@ class Study:
     def main(self, argv: Sequence[str] | None = None, *, command: str | None = None) -> int:
         """Read the arguments, run the study, store and report; returns the exit code."""
         arguments = list(sys.argv[1:] if argv is None else argv)
-        words = command or f"python -m studies {self.name}"
+        words = command or f"{programs.COMMAND} {self.name}"
         return perform(self.name, words, arguments, lambda output: self._perform(words, arguments, output))
 
     def _perform(self, command: str, argv: list[str], output: TextIO) -> int:

@@ -1,4 +1,4 @@
-"""Natural modes of the spring, with films: their shapes, and their share in an impact.
+"""Natural modes of the spring: shapes, films, and share in an impact.
 
 Claim: with legs side by side every bending mode moves the ball towards the stop. A folded strip has two kinds
 of modes: sway modes do, breathing modes move the ball along the legs at most, and take no part in impacts.
@@ -26,6 +26,7 @@ import numpy as np
 from beam import Modes, write_mode_motion, write_modes
 from studies import letter
 from studies.shell.film import MOST_FRAMES, Moment, Scenery, stage_of, write_gif
+from studies.shell.options import Within
 from studies.shell.scene import Scene, SceneError, damping_of, free_period, model_of, modes_of
 from studies.shell.study import Run, study
 
@@ -60,13 +61,13 @@ def modes(
     run: Run,
     *,
     mode: Annotated[int, "mode to animate"] = 1,
-    frames: Annotated[int, "frames in one period, an even number"] = 24,
+    frames: Annotated[int, "frames in one period, an even number", Within(2, MOST_FRAMES)] = 24,
     filmed: Annotated[int, "modes with a film, lowest first"] = FILMED,
 ) -> Mapping[str, object]:
     """Compute, store and draw."""
+    if frames % 2:
+        raise SceneError(f"frames is {frames}; it must be an even number")
     solved = None if scene.spring.kind == "modal_data" else modes_of(scene)
-    if frames % 2 or frames > MOST_FRAMES:
-        raise SceneError(f"--frames must be an even number, at most {MOST_FRAMES}, not {frames}")
     rows = rows_of(scene, solved)
     if mode > len(rows):
         raise SceneError(f"--mode must be at most {len(rows)}, the modes of this scene, not {mode}")

@@ -6,18 +6,23 @@ import json
 import re
 from pathlib import Path
 from types import SimpleNamespace
+from typing import get_type_hints
 
 import numpy as np
 import pytest
+from conftest import study_of
 
+from studies.__main__ import main
 from studies.experiment.hysteresis.__main__ import Accuracy, Causes, judge
 from studies.experiment.hysteresis.model import CAUSES, DESCRIPTIONS
 from studies.experiment.soft_wall.model import loss_of_stability
 from studies.measurement.identify import next_measurement
 from studies.methods.work_precision.problems import problems_of
 from studies.shell import plotting
-from studies.shell.programs import account_of, module_of, names, run_times, studies
+from studies.shell.executors import progress
+from studies.shell.programs import COMMAND, account_of, module_of, names, run_times, studies
 from studies.shell.run import Run
+from studies.shell.study import Study
 
 ON_THE_FRAME = studies()
 
@@ -81,33 +86,21 @@ REFUSED = [
     *((name, "--set spring.kind=modal_data", "modal_data") for name in ON_A_SPRING),
     ("breakdown", "--set single_mode.free_period_s=0.06", "free_period_s"),
     ("chart", "--points 1 9", "points"),
-    ("chart", "--side 1", "side is 1; it must be 2 or more"),
-    ("breakdown", "--points 1", "points is 1; it must be 2 or more"),
-    ("breakdown", "--points 900000", "points is 900000, which makes 4.5e+06 cells"),
-    ("modes", "--frames 1000000", "--frames must be an even number, at most 10000"),
-    ("time_trace", "--frames 1000000", "frames is 1000000; a film has at most 10000"),
-    ("last_period", "--stability 0", "stability is 0 [1]; it must be above 0"),
-    ("last_period", "--correlation-times -1", "correlation_times holds -1 s; it must be 0 or more"),
-    ("identify", "--noise-um 0", "noise_um is 0.0 um; it must be finite and above zero"),
+    ("breakdown", "--points 900000", "from 2 to 200000, not '900000'"),
+    ("modes", "--frames 11", "frames is 11; it must be an even number"),
+    ("time_trace", "--frames 1000000", "--frames: must be a whole number from 1 to 10000"),
     ("identify", "--drive 22.2 2", "drive is 22.2 Hz, 2 mm; it needs a record"),
     ("modes", "--executor moon", "executor is 'moon'; it must be threads"),
     ("time_trace", "--set stop.gap_m=1e-300", "stop.gap_m must be at least 1e-12"),
     ("time_trace", "--set single_mode.free_period_s=1e-300", "single_mode.free_period_s"),
     ("time_trace", "--set spring.young_modulus_pa=1e300", "at most 1e+15 (unit Pa)"),
-    ("chart", "--side 5000", "side is 5000, which makes 2.5e+07 cells"),
     ("chart", "--points 90000 90000", "points is 90000 90000, which makes 8.1e+09 cells"),
-    ("hysteresis", "--step 1e-9", "step is 1e-09 Hz, which makes"),
-    ("hysteresis", "--step 0", "step"),
+    ("hysteresis", "--step 1e-9", "--step: must be a number from 0.0001 to 4.2 Hz"),
     ("hysteresis", "--set drive.frequencies_hz=[2000]", "2000 Hz"),
-    ("noise", "--stability 0", "stability is 0 [1]; it must be above 0"),
     ("noise", "--amplitude-step 1e-6", "amplitude_step is 1e-06 [1]; with a stability of"),
-    ("noise", "--waiting 10", "waiting is 10 drive periods; it must be at least 1000"),
-    ("noise", "--correlation-times -1", "correlation_times holds -1 s; it must be 0 or more"),
-    ("noise", "--scans 3", "scans is 3; quantiles need at least 10"),
+    ("noise", "--waiting 10", "--waiting: must be a whole number from 1000"),
     ("soft_wall", "--decades 5 3", "decades"),
     ("stability", "--families none", "families"),
-    ("time_trace", "--excess=-1", "excess"),
-    ("time_trace", "--frequency 0", "frequencies_hz"),
     ("time_trace", "--frequency 1e6", "1e+06 Hz"),
 ]
 
@@ -118,7 +111,46 @@ def test_what_a_study_cannot_use_is_refused_in_one_sentence(run_study, name, arg
     assert ran.code == 2 and ran.summary == {}
     sentence = ran.err.splitlines()[-1]
     assert sentence.startswith(f"python -m studies {name}: ") and named in sentence, ran.err
-    assert "Traceback" not in ran.err
+    assert "Traceback" not in ran.err and not ran.folder.exists()
+
+
+#: Number options that take zero.
+ZERO = ("excess", "delay_ms", "correlation_times")
+
+
+@pytest.mark.parametrize("name", ON_THE_FRAME)
+def test_an_impossible_number_is_refused_before_anything_is_computed(tmp_path, capsys, monkeypatch, name):
+    study = study_of(name)
+    monkeypatch.setattr(Study, "_compute", lambda *_: pytest.fail("the study began"))
+    for option, kind in get_type_hints(study.function, include_extras=True).items():
+        if not (found := re.search(r"\[(int|float)(, \1)?", str(kind))):
+            continue
+        for number in ("-2e0", "1e300", *["0"] * (option not in ZERO)):
+            flag, values = f"--{option.replace('_', '-')}", [number] * (2 if found[2] else 1)
+            assert study.main([flag, *values, "--out", str(tmp_path)]) == 2, flag
+            (sentence,) = capsys.readouterr().err.splitlines()
+            assert re.search(rf"{flag}: must be .* (from|above) [-\d.]+ .*, not '{number}'", sentence)
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("words", [["list"], ["--list"], ["--help"]])
+def test_help_and_list_show_every_program_in_one_short_line(capsys, words):
+    assert main(words) == 0
+    told = capsys.readouterr().out
+    lines = [re.findall(rf"^    {name} +(.{{20,74}}\.)$", told, re.MULTILINE) for name in names()]
+    assert [len(found) for found in lines] == [1] * len(names())
+    assert (f"{COMMAND} transitions --help" in told) == (words == ["--help"])
+
+
+def test_progress_says_what_it_counts(capsys, monkeypatch, tmp_path, letter_scene):
+    monkeypatch.setattr("studies.shell.executors.INTERVAL", 0.0)
+    run = Run(study="transitions", folder=tmp_path, scene=letter_scene, command="")
+    list(run.track(range(3), "frequencies"))
+    with progress("all studies", 249, "s") as tick:
+        tick(102)
+    said = capsys.readouterr().err.splitlines()
+    assert re.match(r"transitions: 2 of 3 frequencies, [\d.e+]+ (per s|s each), \d:\d\d:\d\d left$", said[1])
+    assert said[3].startswith("all studies: 102 of about 249 s")
 
 
 @pytest.mark.slow

@@ -1,4 +1,5 @@
-"""Where the map fails near grazing: the letter's Fig. 5, f = 19.65 Hz, T = 41.2 ms, mu = 3.56 1/s.
+"""Fig. 5 of the letter: where the square-root map fails near grazing.
+Its values are f = 19.65 Hz, T = 41.2 ms and mu = 3.56 1/s.
 
 Claim (letter 1996, Fig. 5): where the map has p3, "at rho = 0 the trivial noncolliding p1 orbit gives way to
 a period-6 orbit. The stable periodic p3 orbit is found only at the very end of the downward scan"; and
@@ -28,7 +29,6 @@ from typing import Annotated
 
 import numpy as np
 
-from beam import InvalidValue
 from contact import maximal_period
 from studies import letter
 from studies.experiment.breakdown.model import (
@@ -49,7 +49,7 @@ from studies.experiment.breakdown.model import (
 )
 from studies.physics.descriptions import Diagram, word
 from studies.physics.least_model import TRACE_EXCESS
-from studies.shell.options import require_cells
+from studies.shell.options import MOST_CELLS, Within
 from studies.shell.scene import Scene, model_of, nordmark_at
 from studies.shell.study import Run, study
 
@@ -73,13 +73,10 @@ def breakdown(
     run: Run,
     *,
     full: Annotated[bool, "as the experiment did: 10000 drive periods per amplitude, never fewer"] = False,
-    points: Annotated[int, "amplitudes of a scan below grazing"] = 81,
+    points: Annotated[int, "amplitudes of a scan below grazing", Within(2, MOST_CELLS // 5)] = 81,
     cycles: Annotated[int, "most drive periods at an amplitude"] = 2000,
 ) -> Mapping[str, object]:
     """Compute, store and draw."""
-    require_cells("points", points, 5 * points)
-    if points < 2:
-        raise InvalidValue(f"points is {points}; it must be 2 or more")
     scene = fig_5(scene)
     tau, nordmark = scene.single_mode.restitution, nordmark_at(scene, FREQUENCY_HZ)
     taus = sorted({*(QUICK_RESTITUTIONS if run.quick else RESTITUTIONS), tau})
@@ -125,7 +122,7 @@ def search(scene: Scene, run: Run) -> tuple[list[Cell], list[Spring]]:
     springs = [
         Spring(scene=scene, model=models[m], tip_mass_kg=m, higher_damping=k) for m in masses for k in factors
     ]
-    found = run.attempt(cell_of, springs, "search")
+    found = run.attempt(cell_of, springs, "cells of the search")
     cells = [cell for cell in found if cell is not None]
     run.table("born_period", cells, "Period born at grazing over unprinted values.", of=Cell, show=())
     with_6 = [one for one, cell in zip(springs, found, strict=True) if cell and cell.period == BORN_PERIOD]

@@ -1,4 +1,4 @@
-"""The plane of drive frequency and amplitude: which period, how many impacts, upwards and downwards.
+"""Periods and numbers of impacts over drive frequency and amplitude.
 
 Claim (letter 1996, Figs. 1 to 3, for a whole plane): below grazing an orbit p_m coexists with the motion
 without impacts down to its fold; at grazing the period follows the bands of the map; above it periods
@@ -33,7 +33,6 @@ from typing import Annotated, Literal
 
 import numpy as np
 
-from beam import InvalidValue
 from contact import ImpactOscillator
 from contact.orbits import AmplitudeScan
 from studies import letter
@@ -51,7 +50,7 @@ from studies.experiment.chart.model import (
     side_by_side,
 )
 from studies.physics.descriptions import TITLES, strobed_at
-from studies.shell.options import require_cells
+from studies.shell.options import HERTZ, MOST_CELLS, Within
 from studies.shell.scene import (
     Scene,
     beam_at,
@@ -90,15 +89,14 @@ def chart(
     run: Run,
     *,
     model: Annotated[Literal["single_mode", "beam"], "Eq. (1) or the beam"] = "single_mode",
-    points: Annotated[tuple[int, int] | None, "frequencies and amplitudes (400 400, beam 120 120)"] = None,
-    cut_hz: Annotated[float | None, "drive frequency of the cut [Hz] (21.5; another spring: its f T)"] = None,
-    side: Annotated[int, "starts along each side of the basins"] = 200,
+    points: Annotated[
+        tuple[int, int] | None, "frequencies and amplitudes (400 400, beam 120 120)", Within(2, MOST_CELLS)
+    ] = None,
+    cut_hz: Annotated[float | None, "frequency of the cut (21.5; another spring: its f T)", HERTZ] = None,
+    side: Annotated[int, "starts along each side of the basins", Within(2, 1000)] = 200,
     fresh: Annotated[bool, "forget what is stored and begin anew"] = False,
 ) -> Mapping[str, object]:
     """Compute, store and draw."""
-    require_cells("side", side, side**2)
-    if side < 2:
-        raise InvalidValue(f"side is {side}; it must be 2 or more")
     f = corresponding(harmonic(scene), letter.TIME_TRACE_HZ) if cut_hz is None else cut_hz
     with_modes = run.choose_modes(scene, CUT_NEEDS)
     columns, rows = points or (QUICK_POINTS if run.quick else POINTS)[model]
@@ -192,7 +190,7 @@ def basins(scene: Scene, run: Run, f: float, side: int) -> Mapping[str, object]:
     from studies.experiment.chart import figure  # matplotlib is slow to import
 
     plane = settled.plane_of(scene, f, side)
-    leads = np.array(run.map(plane.line, plane.velocity.tolist(), "basins"))  # shape (velocities, x)
+    leads = np.array(run.map(plane.line, plane.velocity.tolist(), "rows of the basins"))
     run.arrays("basins", x=plane.x, velocity=plane.velocity, leads=leads)
     run.figure("basins", figure.draw_basins(plane, leads, f), figure.BASINS)
     period, shares = plane.period, settled.parts(leads, plane.period)

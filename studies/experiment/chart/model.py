@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 from beam import InvalidValue
 from contact import Band, ImpactOscillator, MaximalFamily
 from contact.orbits import AmplitudeScan, PeriodicOrbit, Shooting, fold_along_frequency
-from studies.shell.options import require_cells
+from studies.shell.options import MOST_CELLS
 from studies.shell.scene import Scene, band_of
 from studies.shell.sweep import Column
 
@@ -51,11 +51,9 @@ class Plane:
     frequencies_hz: tuple[float, float] = FREQUENCIES_HZ
 
     def __post_init__(self) -> None:
-        if self.columns < 2 or self.rows < 2:
-            raise InvalidValue(
-                f"points of the chart are {self.columns} by {self.rows}; each must be 2 or more"
-            )
-        require_cells("points", f"{self.columns} {self.rows}", self.columns * self.rows)
+        if self.columns * self.rows > MOST_CELLS:
+            found = f"{self.columns} {self.rows}, which makes {self.columns * self.rows:.3g} cells"
+            raise InvalidValue(f"points is {found}; at most {MOST_CELLS} are computed")
 
     def frequencies(self) -> NDArray[np.float64]:
         """All of them, rising [Hz]."""

@@ -87,13 +87,13 @@ def energy_loss(scene: Scene, run: Run) -> Mapping[str, object]:
     from studies.experiment.claims import figure  # matplotlib is slow to import
 
     drives = sorted(scene.drive.frequencies_hz)
-    lines = run.map(partial(line_of, scene, drives), RESTITUTIONS, "p_m against loss")
+    lines = run.map(partial(line_of, scene, drives), RESTITUTIONS, "restitutions")
     rows = [node for f in zip(*lines, strict=True) for node in f]
     low, high = (corresponding(scene, f) for f in SCANNED_HZ)
     across, restitutions = QUICK_PLANE if run.quick else PLANE
     frequencies = np.linspace(low, high, across)
     tau = np.linspace(0.0, 0.9, restitutions)
-    plane = run.map(partial(below_grazing, scene, frequencies.tolist()), tau.tolist(), "plane of f and tau")
+    plane = run.map(partial(below_grazing, scene, frequencies.tolist()), tau.tolist(), "rows of the plane")
     below = np.array([part for part, _ in plane])
     run.table("loss", rows, "Fold and first bifurcation of p_m, F/F_g - 1.", of=Node, show=())
     run.figure("loss", figure.draw_loss(rows, tau, below), figure.LOSS)
@@ -181,7 +181,7 @@ def born_everywhere(scene: Scene, run: Run, count: int) -> list[Born]:
         )
     again = [i for i, row in enumerate(rows) if row.next_to_edge and not row.agrees]
     nearer = [jobs[i]._replace(excess=CLOSER * excess) for i in again]
-    for i, period in zip(again, run.attempt(born_at, nearer, "closer to grazing"), strict=True):
+    for i, period in zip(again, run.attempt(born_at, nearer, "born periods closer to grazing"), strict=True):
         rows[i] = replace(rows[i], closer=period)
     return rows
 

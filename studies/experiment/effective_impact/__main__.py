@@ -1,4 +1,4 @@
-"""What one approach of the tip to the plate does to the single-mode motion: restitution, delay and kick.
+"""What one collision does to mode 1: restitution, delay and kick.
 
 Claim (letter 1996): a collision of the spring with its many modes is, for the single mode of Eq. (1), an
 impact with "energy loss and time delay"; the restitution is "estimated to be tau ~ 0.1", and the loss is put

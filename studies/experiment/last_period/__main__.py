@@ -1,4 +1,4 @@
-"""Why p10 was the last period, and what the six transitions owe to errors and unprinted values.
+"""Why p10 is the letter's last period, and what errors can change.
 
 Claims (letter 1996): T = 40.80 +- 0.02 ms; the last of the six transitions, at 23.40 Hz, goes to p10; p10 "is
 at the limit of our experimental resolution and stability".  Map, Eq. (1) and beam have p11 there.
@@ -31,7 +31,7 @@ from studies.experiment.last_period.changes import DESCRIPTIONS, changes_of, tra
 from studies.experiment.last_period.clouds import Clouds, clouds_of, frequency_of
 from studies.letter import AMPLITUDE_STABILITY, PERIODS
 from studies.physics.descriptions import strobed_at
-from studies.physics.drive_noise import DriveNoise
+from studies.physics.drive_noise import DRIFTS, SMALL, TIMES, DriveNoise
 from studies.shell.scene import Scene, SceneError, harmonic, model_of, single_mode_at
 from studies.shell.study import Run, study
 
@@ -49,8 +49,8 @@ def last_period(
     scene: Scene,
     run: Run,
     *,
-    stability: Annotated[float, "standard deviation of the amplitude, relative"] = AMPLITUDE_STABILITY,
-    correlation_times: Annotated[tuple[float, ...], "of its drift (s), 0 for white"] = (0.0, 100.0, 3600.0),
+    stability: Annotated[float, "standard deviation over the amplitude", SMALL] = AMPLITUDE_STABILITY,
+    correlation_times: Annotated[tuple[float, ...], "of its drift (s), 0 for white", TIMES] = DRIFTS,
 ) -> Mapping[str, object]:
     """Compute, store and draw."""
     if harmonic(scene).spring.kind == "modal_data":
@@ -60,7 +60,9 @@ def last_period(
     model, frequencies = model_of(scene), sorted(scene.drive.frequencies_hz)
 
     base = [
-        row for rows in run.map(partial(transitions_at, scene, model), frequencies, "now") for row in rows
+        row
+        for rows in run.map(partial(transitions_at, scene, model), frequencies, "frequencies")
+        for row in rows
     ]
     after = run.attempt(partial(transitions_after, scene, base), changes_of(scene, run.quick), "changes")
     rows = base + [row for found in after for row in found or ()]
@@ -105,7 +107,7 @@ def pair_intervals(scene: Scene, run: Run) -> list[pairs.Interval]:
     if not run.letters:
         return []
     intervals_of = partial(pairs.intervals_of, single_mode_at(scene, FREQUENCY_HZ))
-    columns = run.map(intervals_of, pairs.EXCESSES[: 2 if run.quick else None], "pairs")
+    columns = run.map(intervals_of, pairs.EXCESSES[: 2 if run.quick else None], "excesses of the pairs")
     rows = [row for column in columns for row in column]
     run.table("pairs", rows, "Free periods with the letter's six pairs.", of=pairs.Interval, show=())
     if not run.quick:

@@ -1,4 +1,4 @@
-"""A wall of finite hardness: how the square root is smoothed, and what orbit that adds at grazing.
+"""A wall of finite hardness: how it smooths the square root at grazing.
 
 Claim (letter 1996, last page): a wall "such that at impact the spring constant changes by a factor K >> 1"
 affects the bifurcations close to grazing in a characteristic manner, to larger amplitudes the smaller K; the
@@ -33,6 +33,7 @@ import numpy as np
 from studies import letter
 from studies.experiment.soft_wall.closed_forms import SoftWall
 from studies.experiment.soft_wall.model import Beam, Doubling, Kick, beam_of, doubling_of, kicks_of
+from studies.shell.options import Within
 from studies.shell.scene import Scene, SceneError, harmonic, single_mode_at
 from studies.shell.study import Run, study
 
@@ -49,11 +50,11 @@ def soft_wall(
     scene: Scene,
     run: Run,
     *,
-    decades: Annotated[tuple[int, int], "powers of ten between which K runs"] = (1, 6),
+    decades: Annotated[tuple[int, int], "powers of ten between which K runs", Within(1, 7)] = (1, 6),
 ) -> Mapping[str, object]:
     """Compute, store and draw."""
-    if not decades[0] <= decades[1] <= 7:
-        raise SceneError(f"decades is {decades}; K runs upwards, to 10^7 at most")
+    if decades[0] > decades[1]:
+        raise SceneError(f"decades is {decades}; the second power must be the first or more")
     frequencies = sorted(set(harmonic(scene).drive.frequencies_hz))
     shown = min(frequencies, key=lambda f: abs(f - SHOWN_HZ))
     if run.quick:
@@ -63,11 +64,11 @@ def soft_wall(
     walls = [SoftWall(oscillator=one, hardness=K) for one in singles for K in hardness]
     excesses = np.geomspace(1e-8, 3e-2, 14 if run.quick else 27)
     curves = [wall for wall in walls if wall.frequency == shown]
-    found = run.attempt(partial(kicks_of, excesses=excesses), curves, "kicks")
+    found = run.attempt(partial(kicks_of, excesses=excesses), curves, "curves of kicks")
     kicks = [row for rows in found for row in rows or ()]
     doublings = [row for row in run.attempt(doubling_of, walls, "period doublings") if row]
     job = partial(beam_of, scene, excesses=np.geomspace(1e-7, 1e-1, 13 if run.quick else 37).tolist())
-    (of_beam,) = run.attempt(job, [shown], "beam")
+    (of_beam,) = run.attempt(job, [shown], "beams")
     beam, more = of_beam or (None, [])
     run.table("kicks", [*kicks, *more], "Kick velocity of one collision [m/s].", of=Kick, show=())
     run.table("doublings", doublings, "Excess F/F_g - 1 at which p1 doubles its period.", of=Doubling)

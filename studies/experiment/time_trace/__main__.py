@@ -1,4 +1,4 @@
-"""A settled orbit against time, one of its collisions from close by, and its spectrum.
+"""Fig. 4 of the letter: a settled orbit in time, and its spectrum.
 
 Claim (letter 1996, Fig. 4): at F/F_g - 1 = 0.013 the orbit has period 4, and at impact "a multitude of
 high-order modes is excited in the beam".
@@ -29,7 +29,6 @@ from typing import Annotated, Any
 
 from scipy.constants import g
 
-from beam import InvalidValue
 from contact import Collision, StroboscopicMap
 from contact.orbits import born
 from studies import letter
@@ -37,6 +36,7 @@ from studies.experiment.time_trace import film as filming
 from studies.experiment.time_trace.model import Peak, close_up, lines_of, peaks_of, trace_of
 from studies.physics.descriptions import word
 from studies.shell.film import MOST_FRAMES
+from studies.shell.options import HERTZ, Within
 from studies.shell.run import Verdict
 from studies.shell.scene import Scene, beam_at, model_of, own_frequency, require_drive_below
 from studies.shell.study import Run, study
@@ -69,17 +69,16 @@ def time_trace(
     scene: Scene,
     run: Run,
     *,
-    excess: Annotated[float, "F/F_g - 1 of the orbit, above -1"] = letter.TIME_TRACE_EXCESS,
+    excess: Annotated[float, "F/F_g - 1 of the orbit", Within(-1, 1e6, open=True)] = letter.TIME_TRACE_EXCESS,
     frequency: Annotated[
         float | None,
         "drive frequency (Hz); by default 21.5, or that of the scene with this f T, or its middle one",
+        HERTZ,
     ] = None,
     film: Annotated[bool, "film one period of the orbit"] = False,
-    frames: Annotated[int, "frames of the film"] = 240,
+    frames: Annotated[int, "frames of the film", Within(1, MOST_FRAMES)] = 240,
 ) -> Mapping[str, object]:
     """Compute, store and draw."""
-    if frames > MOST_FRAMES:
-        raise InvalidValue(f"frames is {frames}; a film has at most {MOST_FRAMES}")
     drive_hz = own_frequency(scene, letter.TIME_TRACE_HZ) if frequency is None else frequency
     model = model_of(scene)
     require_drive_below(scene, model, drive_hz)

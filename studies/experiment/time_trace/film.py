@@ -44,6 +44,7 @@ from studies.shell.film import (
     write_gif,
     written_as_mp4,
 )
+from studies.shell.programs import needs
 from studies.shell.scene import Scene, modes_of, shift_at_gap
 from studies.shell.study import Run
 
@@ -102,7 +103,7 @@ def film(
         if can_encode():
             pictures = written_as_mp4(run.path("motion.mp4"), pictures, RATE)
         else:
-            run.say("no mp4: it needs imageio-ffmpeg (pip install -e '.[video]')")
+            run.say(needs("no mp4: it", "imageio-ffmpeg"))
         write_gif(run.path("motion.gif"), pictures, RATE, samples=samples)
     return {"contacts_s": orbit.contacts, "magnification": magnification}
 

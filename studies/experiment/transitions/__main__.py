@@ -1,4 +1,4 @@
-"""The letter's six transitions p1 <-> pm: map, Eq. (1), its two parameters and the beam side by side.
+"""Fig. 2 of the letter: which period begins at grazing, in four models.
 
 Claim (letter 1996, Fig. 2): when the drive amplitude passes grazing, the motion without impacts gives way to
 an orbit of period m with one impact, m = 3, 4, 5, 6, 8, 10 at 20.90 ... 23.40 Hz; when the amplitude is

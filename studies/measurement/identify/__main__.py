@@ -1,4 +1,4 @@
-"""From a measured record to the parameters of the oscillator, with checked error bars.
+"""Parameters of the oscillator, with checked errors, from a record.
 
 Claim: a record of a beam that rattles determines its free period, decay rate, gap, restitution and delay, or
 its contact stiffness, each with an error.  Where it cannot separate two of them, the study says so.
@@ -34,7 +34,6 @@ Writes:  parameters.csv with correlations, quality.csv, profile.csv, residuals.n
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
@@ -66,7 +65,7 @@ from studies.measurement.identify.next_measurement import (
 from studies.measurement.identify.profiles import Profile
 from studies.measurement.identify.records import Kind, Record, read_record, synthetic
 from studies.physics.parameters import Description, described, fitted_scene, parameters_of, require_names
-from studies.shell.options import POSITIONAL
+from studies.shell.options import POSITIONAL, Within
 from studies.shell.scene import Scene, corresponding, harmonic, periods_of
 from studies.shell.study import Run, study
 
@@ -132,26 +131,28 @@ def identify(
     fit: Annotated[tuple[str, ...], "parameters to fit (default: by the kind of record)"] = (),
     description: Annotated[Description, "the oscillator"] = "one_mode",
     drive: Annotated[
-        tuple[float, float] | None, "frequency (Hz) and amplitude of the base (mm), in place of the record's"
+        tuple[float, float] | None,
+        "frequency (Hz) and amplitude of the base (mm), in place of the record's",
+        Within(0, 1e6, "Hz, mm", open=True),
     ] = None,
     sensor: Annotated[
         tuple[str, ...],
         "numbers of the sensor that are fitted to a displacement: phase (of the drive at time zero), offset "
         "(reading at equilibrium), scale (reading per displacement)",
     ] = ("phase", "offset"),
-    noise_um: Annotated[float | None, "noise of the read-out, where it is known"] = None,
+    noise_um: Annotated[
+        float | None, "noise of the read-out, where it is known", Within(0, 1e9, "µm", open=True)
+    ] = None,
     delay_ms: Annotated[
-        float | None, "two_parameters: the delay, or where its fit starts (default: T/136)"
+        float | None, "two_parameters: delay, or start of its fit (default: T/136)", Within(0, 1e9, "ms")
     ] = None,
     coverage: Annotated[int | None, "also fit so many synthetic records of each kind: true errors?"] = None,
     next: Annotated[tuple[str, ...], "parameters of the next measurement (example: T, tau, delay)"] = (),
 ) -> Mapping[str, object]:
     """Read or make, fit, report and draw."""
     harmonic(scene)
-    if noise_um is not None and not 0.0 < noise_um < math.inf:
-        raise InvalidValue(f"noise_um is {noise_um} um; it must be finite and above zero")
-    if drive is not None and (min(drive) <= 0.0 or record is None):
-        raise InvalidValue(f"drive is {drive[0]:g} Hz, {drive[1]:g} mm; it needs a record, and both above 0")
+    if drive is not None and record is None:
+        raise InvalidValue(f"drive is {drive[0]:g} Hz, {drive[1]:g} mm; it needs a record")
     if delay_ms is not None and description != "two_parameters" and record is not None:
         raise InvalidValue(f"delay_ms is {delay_ms:g} ms; only --description two_parameters has a delay")
     if unknown := [name for name in sensor if name not in SENSOR]:
@@ -260,7 +261,7 @@ def where_to_measure(
     before = {name: error for name, error in Plan().before.items() if name not in wanted}
     plan, thin = Plan(names=tuple(wanted), noise=noise, before=before), THIN[run.quick]
     frequencies = [corresponding(scene, f) for f in FREQUENCIES_HZ[::thin]]
-    columns = run.map(partial(measurements_at, of, plan, EXCESSES[::thin]), frequencies, "orbits")
+    columns = run.map(partial(measurements_at, of, plan, EXCESSES[::thin]), frequencies, "frequencies")
     found = [one for column in columns for one in column]
     chosen = best(found)
     caption = f"Standard errors of {', '.join(wanted)} by one orbit."

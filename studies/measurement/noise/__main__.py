@@ -1,4 +1,4 @@
-"""Fig. 3 as an experiment with a noisy drive would see it.
+"""Fig. 3 of the letter as an experiment with a noisy drive shows it.
 
 Claims (letter 1996): "the measured hysteresis differs from the prediction"; the amplitude has a long-term
 stability of 0.5 um of 2 mm, 2.5e-4.
@@ -26,23 +26,21 @@ from typing import Annotated
 
 import numpy as np
 
-from beam import InvalidValue
 from contact import StroboscopicMap
 from contact.orbits import born
 from studies.letter import AMPLITUDE_STABILITY, SETTLE_CYCLES
 from studies.measurement.noise.model import End, Observed, ends_of, observed_of
 from studies.measurement.noise.places import Place
-from studies.measurement.noise.scans import Protocol, cell
+from studies.measurement.noise.scans import FEWEST, Protocol, cell
+from studies.physics.drive_noise import DRIFTS, SMALL, TIMES
 from studies.shell.files import fingerprint
+from studies.shell.options import MOST_CELLS, Within
 from studies.shell.scene import Scene, band_of, corresponding, harmonic, single_mode_at
 from studies.shell.study import Run, study
 from studies.shell.sweep import sweep
 
 LOWEST_HZ, HIGHEST_HZ, BANDS = 19.6, 23.8, range(3, 11)
 """Of Fig. 3."""
-
-FEWEST = 10
-"""Scans at least."""
 
 SPACING = (0.1, 4), (0.5, 2)
 """Hz between places in a band, and places at least: the full form, the small one."""
@@ -53,11 +51,11 @@ def noise(
     scene: Scene,
     run: Run,
     *,
-    stability: Annotated[float, "standard deviation of the amplitude, relative"] = AMPLITUDE_STABILITY,
-    correlation_times: Annotated[tuple[float, ...], "of its drift (s), 0 for white"] = (0.0, 100.0, 3600.0),
-    amplitude_step: Annotated[float, "of a scan, relative"] = AMPLITUDE_STABILITY,
-    waiting: Annotated[int, "drive periods at each amplitude"] = SETTLE_CYCLES,
-    scans: Annotated[int, "up and down at each frequency"] = 100,
+    stability: Annotated[float, "standard deviation over the amplitude", SMALL] = AMPLITUDE_STABILITY,
+    correlation_times: Annotated[tuple[float, ...], "of its drift (s), 0 for white", TIMES] = DRIFTS,
+    amplitude_step: Annotated[float, "of a scan, relative", SMALL] = AMPLITUDE_STABILITY,
+    waiting: Annotated[int, "drive periods at each amplitude", Within(FEWEST, MOST_CELLS)] = SETTLE_CYCLES,
+    scans: Annotated[int, "up and down at each frequency, for quantiles", Within(10, MOST_CELLS)] = 100,
     seed: Annotated[int, "of all noise"] = 1996,
 ) -> Mapping[str, object]:
     """Compute, store and draw."""
@@ -65,8 +63,6 @@ def noise(
         Protocol(step=amplitude_step, waiting=waiting, stability=stability, correlation_s=time)
         for time in dict.fromkeys(correlation_times)
     ]
-    if scans < FEWEST:
-        raise InvalidValue(f"scans is {scans}; quantiles need at least {FEWEST}")
     letters = letter_periods(harmonic(scene))
     places = along_bands(scene, letters, *SPACING[run.quick])
     cells = [(place, each) for place in places for each in protocols]
@@ -79,7 +75,7 @@ def noise(
     own = fingerprint(run.scene.values(), settings)[:12]
     found = sweep(run, f"scans-{own}", settings, cells, partial(cell, scans, seed))
     made = [(*where, one) for where, one in zip(cells, found, strict=True)]
-    ends = [row for rows in run.attempt(ends_of, made, "ends") for row in rows or ()]
+    ends = [row for rows in run.attempt(ends_of, made, "ends of orbits") for row in rows or ()]
     observed = [row for one in made if (row := observed_of(one)) is not None]
     off = [row.off**2 for row in ends if row.off is not None]
     rms = (

@@ -29,7 +29,7 @@ from beam import InvalidValue
 from contact import ContactError
 from contact.orbits import born
 from studies.measurement.noise.places import Place
-from studies.physics.drive_noise import Drift, DriveNoise, require_small, watched
+from studies.physics.drive_noise import Drift, DriveNoise, watched
 
 FAR = 6.0
 """Standard deviations of the noise, beside two steps, from the start of a scan to the end of the orbit."""
@@ -84,16 +84,12 @@ class Protocol(DriveNoise):
         return math.ceil(2.0 * self.reach / self.step) + BEYOND
 
     def __post_init__(self) -> None:
-        super().__post_init__()
-        require_small("amplitude_step", self.step)
         low, high = self.stability / RATIO, self.stability * RATIO
         if not low * (1.0 - EPS) <= self.step <= high * (1.0 + EPS):
             raise InvalidValue(
                 f"amplitude_step is {self.step:g} [1]; with a stability of {self.stability:g} it must lie "
                 f"between {low:g} and {high:g}"
             )
-        if self.waiting < FEWEST:
-            raise InvalidValue(f"waiting is {self.waiting} drive periods; it must be at least {FEWEST}")
 
 
 def waitings(

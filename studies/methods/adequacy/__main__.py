@@ -1,4 +1,4 @@
-"""How detailed the model must be for each question: level, mesh, modes, residual mode and contact law.
+"""How detailed the model must be for each question.
 
 Question: what is the least model for the period that is born at grazing, a collision, or the hysteresis?
 

@@ -13,7 +13,7 @@ started anew there (``studies.methods.peers.piecewise``). Nothing is shared with
 parameters. Dashpots, constant loads and other laws are refused; a tip that comes to rest on the stop ends in
 an error.
 
-heyoka and scikit-sundae are the extra `peers`; no library is imported before a run needs it.
+No library is imported before a run needs it.
 """
 
 from __future__ import annotations
@@ -29,6 +29,7 @@ from contact import HertzContact, ImpactOscillator, LinearContact, NewtonRestitu
 from contact.integrators import Integrator, Run
 from studies.methods.peers.adapters import cvode_pieces, heyoka_pieces, scipy_pieces
 from studies.methods.peers.piecewise import Advance, Equations, pieced
+from studies.shell.programs import needs
 
 LIBRARIES = {"scipy": ("scipy", 2.5e-14), "heyoka": ("heyoka", 2.3e-16), "sundials": ("sksundae", 1e-15)}
 """The module of each library, and the least tolerance that it takes (solve_ivp replaces smaller ones)."""
@@ -64,7 +65,6 @@ class OutsideSolver(Integrator):
     name: ClassVar[str] = "outside"
     order: ClassVar[float] = math.nan
     laws: ClassVar[tuple[int, ...]] = (NewtonRestitution.code, LinearContact.code, HertzContact.code)
-    limit: ClassVar[str] = "none to choose: the error control shortens the steps"
     source: ClassVar[str] = (
         "P. Virtanen et al., Nature Methods 17 (2020) 261; F. Biscani, D. Izzo, Mon. Not. R. Astron. Soc. "
         "504 (2021) 2614; A. C. Hindmarsh et al., ACM Trans. Math. Softw. 31 (2005) 363"
@@ -77,9 +77,7 @@ class OutsideSolver(Integrator):
         if not (isinstance(self.tolerance, int | float) and least <= self.tolerance < 1):
             raise InvalidValue(f"tolerance is {self.tolerance}; it must lie between {least:g} and 1")
         if find_spec(module) is None:
-            raise ImportError(
-                f'{module} is not installed; it comes with the extra peers: pip install -e ".[peers]"'
-            )
+            raise ImportError(needs(f"{module} is not installed: {self.solver}", "heyoka scikit-sundae"))
 
     def follow(self, oscillator: ImpactOscillator, run: Run) -> Trajectory:
         """The motion of `run`; evaluations are those of the right-hand side, heyoka's its Taylor steps."""

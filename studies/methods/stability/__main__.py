@@ -1,4 +1,4 @@
-"""Where each method fails: what theory gives and what is found, method by method.
+"""Where each numerical method fails: theory beside measurement.
 
 Claim: a method for impacts fails by its step, by what it does to the energy of a contact, by a touch that it
 does not see, or by impacts that accumulate, and each of these failures lies where theory puts it. Six

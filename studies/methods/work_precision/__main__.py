@@ -1,4 +1,4 @@
-"""Error against cost of every method for impacts, over its step or tolerance.
+"""Error against cost of every method for impacts.
 
 Claim: on these problems no outside solver and no method with a time step is both faster and as accurate as
 the exact method that `simulate` takes by default; the letter's own scheme, the same flights with a search
@@ -76,7 +76,7 @@ def work_precision(scene: Scene, run: Run) -> Mapping[str, object]:
     jobs = [(one, sweep) for one in references for sweep in sweeps_for(one.problem, quick=run.quick)]
     slowest, repeats = (SLOWEST_QUICK, 3) if run.quick else (SLOWEST, REPEATS)
     rows: list[Row] = []
-    for reference, sweep in run.track(jobs, "errors and costs"):  # nothing runs beside a timing
+    for reference, sweep in run.track(jobs, "sweeps of errors and costs"):  # nothing runs beside a timing
         rows += rows_of(reference, sweep, slowest=slowest, repeats=repeats)
     reference, periodic = orbit_rows(quick=run.quick, repeats=repeats)
     references, rows = [*references, reference], [*rows, *periodic]

@@ -69,7 +69,7 @@ def costs(scene: Scene, run: Run) -> list[Cost]:
     model = model_of(harmonic(scene).replace({"modes.count": max(counts)}))
     cases = [(SINGLE, single_mode_at(scene, frequency)) for frequency in frequencies]
     cases += [(BEAM, beam_at(scene, FREQUENCY, model.truncated(n))) for n in counts]
-    tracked = run.track(cases, "cost of a drive period")
+    tracked = run.track(cases, "costs of a drive period")
     return [row for case, oscillator in tracked for row in rows_of(case, oscillator, quick=run.quick)]
 
 

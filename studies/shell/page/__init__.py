@@ -28,7 +28,7 @@ from jinja2 import Environment, FileSystemLoader
 from beam import InvalidValue
 from studies import letter
 from studies.shell.files import write_atomically
-from studies.shell.programs import ALL, account_of, studies
+from studies.shell.programs import ALL, COMMAND, account_of, studies
 
 MOST_ROWS, MOST_COLUMNS = 40, 12
 """Of a table on the page; a longer one is named and left to its file."""
@@ -126,7 +126,7 @@ def read_results(results: Path) -> list[Stored]:
     """
     found = [read_stored(results / name) for name in studies() if (results / name / "summary.json").exists()]
     if not found:
-        raise InvalidValue(f"there are no results in {results}: run python -m studies first")
+        raise InvalidValue(f"there are no results in {results}: run {COMMAND} first")
     return found
 
 
@@ -159,7 +159,7 @@ def write_page(results: Path) -> tuple[Path, list[Stored], list[str]]:
     text = environment.get_template("page.html.j2").render(
         stored=found,
         missing=missing,
-        command=ALL,
+        command=COMMAND,
         points=points,
         unjudged=len(letter.POINTS) - len(points),
         tally=Counter(str(point["verdict"]) for point in points),

@@ -17,6 +17,7 @@ from jinja2 import ChoiceLoader, DictLoader
 from beam import InvalidValue
 from studies import ROOT
 from studies.shell.files import told
+from studies.shell.programs import needs
 
 INDEX = """{% set root_module_name = false %}{% extends "default/index.html.jinja2" %}
 {% block title %}grazing-spring{% endblock %}{% block logo %}{% endblock %}
@@ -40,7 +41,7 @@ def write_site(results: Path, page: Path, modules: Sequence[str]) -> Path:
     try:
         from pdoc import doc, render
     except ImportError as error:
-        raise InvalidValue("a site needs pdoc: python -m pip install 'grazing-spring[docs]'") from error
+        raise InvalidValue(needs("a site", "pdoc")) from error
     readme, folder = ROOT / "README.md", results / "site"
     render.configure(docformat="numpy", show_source=False)
     usual = [render.env.loader] if render.env.loader else []

@@ -35,6 +35,7 @@ from contact import (
     band,
 )
 from studies import ROOT, letter
+from studies.shell.programs import COMMAND
 from studies.shell.scene.key import OPEN as OPEN
 from studies.shell.scene.key import SceneError, shown
 from studies.shell.scene.spring import READOUT as READOUT
@@ -259,7 +260,7 @@ def beyond_linear(scene: Scene) -> str | None:
     return (
         f"at the gap, stop.gap_m = {scene.stop.gap_m:g} m, the free frequency is {shift_at_gap(scene):+.2%} "
         f"off that of small swings and {feels}, which can change the periods born at {', '.join(moved)} Hz; "
-        "the model is linear, and `python -m studies shape` says what is left of them"
+        f"the model is linear, and `{COMMAND} shape` says what is left of them"
     )
 
 

@@ -1,4 +1,4 @@
-"""What "U shaped" means: springs of one free period and their twist modes; the flat U as a plate.
+"""Which springs the words "U shaped" allow, and what they change.
 
 Claim (letter 1996, Fig. 1 and text): the spring is U shaped to suppress torsional modes. The words allow
 three shapes: legs side by side in the plane of the sheet, a channel, and a strip folded into a U. A plain

@@ -161,7 +161,7 @@ def orbit_rows(
 ) -> list[OrbitEnds]:
     """The orbits at each frequency."""
     cells = [Cell(spring, frequency) for frequency in frequencies for spring in springs]
-    found, rows = iter(run.attempt(partial(Cell.end, scene=scene), cells, "ends")), []
+    found, rows = iter(run.attempt(partial(Cell.end, scene=scene), cells, "ends of orbits")), []
     for frequency in frequencies:
         known = {spring.name: one for spring, one in zip(springs, found, strict=False) if one}
         rows.append(
