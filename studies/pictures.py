@@ -31,12 +31,11 @@ from beam import BALL, InvalidValue
 from contact import StroboscopicMap, simulate
 from contact.orbits import Shooting, fold_of
 from studies import ROOT, letter
-from studies.experiment.time_trace.film import drawn_shapes
 from studies.physics.descriptions import up_and_down
 from studies.shell.files import json_text, make_folder, write_atomically
 from studies.shell.film import DRIVE, NO_RENDERING, TOUCHED, Scenery, can_render, prepare_off_screen
 from studies.shell.options import Parser, tool
-from studies.shell.plotting import BLUE, PALETTE, PURPLE, STYLE, VERMILION
+from studies.shell.plotting import BLUE, PALETTE, PURPLE, STYLE, VERMILION, Style
 from studies.shell.scene import beam_at, model_of, modes_of, read_scene
 
 Drawn = Mapping[str, Any]
@@ -91,14 +90,15 @@ def draw_spring(axes: Axes, drawn: Drawn) -> None:
     scenery = Scenery.of(modes, ball_radius=SCENE.tip.ball_radius_m, gap=gap, swing=gap)
     mesh, plate = scenery.mesh, np.array(scenery.plate)
     coordinates = np.array([drawn["impact"], drawn["lowest"], np.zeros(len(drawn["impact"]))])
-    shapes = mesh.points + drawn_shapes(mesh, modes, coordinates, 1.0)[0]
+    moving = np.flatnonzero(modes.coupled)[: coordinates.shape[1]]
+    shapes = mesh.points + np.tensordot(coordinates, mesh.shapes[moving], 1)
     base = np.array([(-0.012, -0.008, -0.019), (0.002, 0.008, 0.019)])
     plotter: Any = pyvista.Plotter(off_screen=True, window_size=[1274, 980])
     plotter.set_background("white")
     plotter.enable_anti_aliasing("ssaa")
-    light = {"ambient": 0.35, "diffuse": 0.65}
+    light: Style = {"ambient": 0.35, "diffuse": 0.65}
     for points, opacity in zip(shapes, (1.0, 0.16, 0.10), strict=True):
-        look = {"cmap": [STRIP, STEEL], "show_scalar_bar": False, "opacity": opacity, **light}
+        look: Style = {"cmap": [STRIP, STEEL], "show_scalar_bar": False, "opacity": opacity, **light}
         plotter.add_mesh(mesh.grid(points), scalars=(mesh.part == BALL).astype(float), clim=(0, 1), **look)
     for box, colour in ((plate, TOUCHED), (base, DARK)):
         plotter.add_mesh(pyvista.Box(np.ravel(box, "F")), color=colour, **light)
@@ -109,7 +109,7 @@ def draw_spring(axes: Axes, drawn: Drawn) -> None:
     view = plotter.camera.GetCompositeProjectionTransformMatrix(1274 / 980, -1.0, 1.0)
     view = pyvista.array_from_vtkmatrix(view)
     plotter.close()
-    end = int(np.argmax(mesh.points @ view[0, :3]))
+    end = int(np.argmax(np.dot(mesh.points, view[0, :3])))
     for name, point, offset, colour, side in (
         ("plate", np.mean(plate, axis=0), (-16, 12), "#D9600B", "right"),
         ("ball", shapes[0][np.unique(mesh.triangles)].mean(axis=0), (-52, 8), STEEL, "right"),
@@ -130,7 +130,7 @@ def draw_orbit(drawn: Drawn) -> Figure:
     figure.text(0.012, 0.93, "the spring at an impact of p4, in true scale")
     axes = figure.add_axes((0.51, 0.145, 0.48, 0.835))
     for way, colour, face, size in (("lowered", VERMILION, "none", 6.5), ("raised", BLUE, BLUE, 3.2)):
-        look = {"color": colour, "markerfacecolor": face, "markersize": size}
+        look: Style = {"color": colour, "markerfacecolor": face, "markersize": size}
         axes.plot(drawn["amplitudes"][way], np.array(drawn["strobes"][way]), "o", **look)
     fold, grazing, raised = drawn["fold"], drawn["grazing"], drawn["amplitudes"]["raised"]
     axes.axvline(fold, color="0.4", linestyle=":", linewidth=1.2, zorder=0)
@@ -166,7 +166,7 @@ def draw_costs(drawn: Drawn) -> Figure:
         missed = f", {100.0 * row['missed_at_1e-8']:.0f} % missed " if row["missed_at_1e-8"] else " "
         line = {"arrowstyle": "-", "color": colour, "relpos": (1.0, 0.5), "shrinkA": 0.0}
         below = end, 1e-8 * 10.0 ** (0.1 - 1.1 * place)  # the further right, the lower: no line meets a word
-        look = {"ha": "right", "va": "center", "arrowprops": line, "color": colour}
+        look: Style = {"ha": "right", "va": "center", "arrowprops": line, "color": colour}
         axes.annotate(name + missed, (end, 1e-8), below, **look)
     words = "missed: share of shallow touches\nat an error of 10$^{-8}$; none elsewhere"
     axes.text(0.99, 0.02, words, transform=axes.transAxes, ha="right", color="0.4", fontsize=11.0)
