@@ -27,7 +27,7 @@ test-slow: $(READY)
 	$(ONE_THREAD) $(BIN)/python -m pytest -n 2 --dist loadgroup -rs -m slow
 
 # LAPACK and NumPy's loops round otherwise there; kernels compiled in this way are not kept.
-NOT_NUMBERS := all_studies docstrings every_study film generic_processor imports letter own_scenes page docs run \
+NOT_NUMBERS := all_studies docstrings every_study film generic_processor imports letter own_scenes page pictures docs run \
 	scene sizes tour wrong_input
 NUMBERS := $(filter-out $(foreach name,$(NOT_NUMBERS),%/test_$(name).py),$(wildcard tests/test_*.py tests/contact/test_*.py tests/studies/test_*.py))
 SIMD := import numpy; print(*numpy.show_config("dicts")["SIMD Extensions"].get("found", []))

@@ -1,7 +1,7 @@
 """Studies: one program per question, on top of `beam` (the spring) and `contact` (the impacts).
 
     python -m studies             the main job: the letter's transitions, and the page of results
-    python -m studies NAME        any study, or `report`, `tour`, `explore`
+    python -m studies NAME        any study, or `report`, `tour`, `explore`, `pictures`
     python -m studies --list      the chapters, one line a study
     python -m studies --all       every study
 

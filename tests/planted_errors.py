@@ -36,7 +36,7 @@ FILES = {
     "one_mode/*": "single_mode|sampling|clouds",
 }
 """Where the places are, and words in the names of the tests that run first there."""
-NOT_RUN = "bounded_calls|all_studies|every_study|explore|film|page|peers|tour"
+NOT_RUN = "bounded_calls|all_studies|every_study|explore|film|page|peers|pictures|tour"
 """Words in the names of tests that measure time, which other programs take too, or that draw."""
 LIMIT = 1200.0
 """Seconds for a file of tests; without an error none needs five minutes, compilation included."""

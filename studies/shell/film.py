@@ -40,8 +40,7 @@ Picture = NDArray[np.uint8]
 """Rows, columns, and red, green, blue."""
 
 NO_RENDERING = (
-    "matplotlib draws the spring in its plane: off-screen rendering does not work here (on Debian it needs "
-    "libegl1 libegl-mesa0 libgl1-mesa-dri)"
+    "off-screen rendering does not work here (on Debian it needs libegl1 libegl-mesa0 libgl1-mesa-dri)"
 )
 
 TRIAL = (
@@ -123,7 +122,7 @@ def stage_of(scenery: Scenery, *, simple: bool = False) -> Iterator[Stage]:
     """What turns a moment into a picture: pyvista where it can draw, or else, and if `simple`, matplotlib."""
     if simple or not can_render():
         if not simple:
-            say(NO_RENDERING)
+            say(f"matplotlib draws the spring in its plane: {NO_RENDERING}")
         yield _painter(scenery)
         return
     with _plotter(scenery) as stage:

@@ -33,7 +33,7 @@ TRACEBACK = "GRAZING_SPRING_TRACEBACK"
 
 FOLDER = Path(__file__).resolve().parent.parent
 CHAPTERS = ("experiment", "spring", "methods", "measurement")
-TOOLS = ("report", "tour", "explore")
+TOOLS = ("report", "tour", "explore", "pictures")
 """Programs without results of a scene."""
 
 STUDY = re.compile(r"^@study\(", re.MULTILINE)
