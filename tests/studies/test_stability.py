@@ -37,16 +37,6 @@ def test_a_threshold_is_found_over_many_decades_and_only_if_it_was_seen_on_both_
     assert threshold(lambda x: False, (1.0, 2.0), 0.1) is None
 
 
-def closed_form_stiffness(model: ModalModel, step: float) -> float:
-    """Where an eigenvalue of kick-flight-kick passes -1, for omega h < pi: with the flow (A, B; C, D) of each
-    mode and its determinant e, 1/k = h sum_k phi_k^2 B_k/(1 + A_k + D_k + e_k) [N/m]."""
-    half = 0.5 * model.decay_rate
-    damped = np.sqrt(model.omega**2 - half**2)
-    fade = np.exp(-half * step)
-    sine, trace = fade * np.sin(damped * step) / damped, 2.0 * fade * np.cos(damped * step)
-    return 1.0 / (step * float(np.sum(model.phi**2 * sine / (1.0 + trace + fade**2))))
-
-
 # central difference
 
 
@@ -94,13 +84,12 @@ def test_energy_of_a_short_contact_is_that_of_the_closed_form_and_can_be_made(x)
 
 
 @pytest.mark.parametrize(("count", "angle"), [(1, 1.0), (3, 1.0), (3, 2.5)])
-def test_order_2_fails_where_the_closed_form_says_and_is_refused_there(count, angle):
-    """By the closed form, the motion, and the spectral radius by which the package refuses."""
+def test_order_2_fails_at_its_limit_and_is_refused_there(count, angle):
+    """By the motion, and the spectral radius by which the package refuses."""
     model = MODEL.truncated(count)
     row = splitting.limit(model, angle)
     assert row.measured == pytest.approx(row.theory, rel=1e-6) and row.refused is True
     method = Splitting(step=angle / float(model.omega[-1]))
-    assert closed_form_stiffness(model, method.step) == pytest.approx(row.theory, rel=1e-9)
     simulate(*pressed(model, 0.99 * row.theory), duration=40 * method.step, method=method)
 
 
