@@ -46,7 +46,7 @@ The folders, from the machine to the orbits
     ``one_mode``        Eq. (1) of the letter, one mode under Newton's law, fast
     ``sensitivity``     derivatives of a motion with respect to its start and its parameters
     ``maps``            `StroboscopicMap`; `NonlinearMode`, one mode at finite amplitude; `NordmarkMap`, the
-                        letter's map, with its orbits (`MapFamily`), folds and `bands` in closed form
+                        letter's map, with its orbits (`MapFamily`), folds and `band` in closed form
     ``orbits``          periodic orbits: `MaximalFamily` in closed form under Newton's law, `Shooting` under
                         any law; `settle` and `orbit_diagram` by following the motion; `follow` to folds,
                         period doublings and grazings; `orbit_end`, where an orbit is lost; Lyapunov exponents
@@ -79,7 +79,7 @@ from contact.laws import (
 )
 from contact.maps.nonlinear_mode import NonlinearMode
 from contact.maps.nordmark import NordmarkMap
-from contact.maps.nordmark_bands import Band, band, bands
+from contact.maps.nordmark_bands import Band, band
 from contact.maps.nordmark_orbits import MapFamily, MaximalOrbit, maximal_period, maximal_periods
 from contact.maps.stroboscope import StrobedMap, StrobedOrbit, StroboscopicMap
 from contact.orbits.families.single_impact import MaximalFamily, SingleImpactOrbit

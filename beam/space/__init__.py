@@ -7,7 +7,7 @@ modes     `spatial_modes`, the natural modes in the plane and out of it
 """
 
 from .modes import SpatialModes, spatial_modes
-from .section import SpatialSection, channel, channel_centroid, flat, upright
+from .section import SpatialSection, channel, flat, upright
 from .spring import SpatialSpring, Vector
 
 __all__ = [
@@ -16,7 +16,6 @@ __all__ = [
     "SpatialSpring",
     "Vector",
     "channel",
-    "channel_centroid",
     "flat",
     "spatial_modes",
     "upright",

@@ -139,14 +139,6 @@ def channel(*, material: Material, width: float, flange: float, thickness: float
     )
 
 
-def channel_centroid(*, width: float, flange: float, thickness: float) -> float:
-    """Return the distance of the centroid of a channel from the middle of its web [m], towards the flanges.
-
-    `width`, `flange` and `thickness` [m] are as for `channel`.
-    """
-    return flange * (flange + thickness) / (width + 2.0 * flange)
-
-
 def _of_strip(section: StripSection, *, upright: bool) -> SpatialSection:
     """Return the section of a strip with its width out of the plane (`upright`) or in it."""
     require_kind("section", section, StripSection, "a StripSection")

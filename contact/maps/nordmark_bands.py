@@ -14,10 +14,9 @@ Source: letter of 1996, Fig. 3 and text.
 """
 
 import math
-from collections.abc import Iterable
 from dataclasses import dataclass
 
-from beam.parameters import require_kind, require_whole, require_within
+from beam.parameters import require_whole, require_within
 from contact.maps.nordmark import NordmarkMap, YLine
 from contact.maps.nordmark_orbits import MOST_PERIODS
 
@@ -73,22 +72,3 @@ def band(
     if m > 2:  # the sign changes before past = pi/2, where sin(theta) < 1; 1e-15 rad is the rounding of theta
         lower = (math.pi + float(brentq(excess_height, 0.0, 0.5 * math.pi, xtol=1e-15))) / (m - 1)
     return Band(period=m, lower=frequency(lower), upper=frequency(math.pi / m))
-
-
-def bands(
-    periods: Iterable[int],
-    *,
-    free_period: float,
-    decay_rate: float,
-    restitution: float,
-    y_line: YLine = "corrected",
-    whole_turns: int = 1,
-) -> tuple[Band, ...]:
-    """Bands of all `periods`, sorted by frequency.
-
-    `free_period`, `decay_rate`, `restitution`, `y_line` and `whole_turns` are as for `band`.
-    """
-    require_kind("periods", periods, Iterable, "a sequence of periods")
-    mode = {"free_period": free_period, "decay_rate": decay_rate, "restitution": restitution}
-    found = [band(m, **mode, y_line=y_line, whole_turns=whole_turns) for m in periods]
-    return tuple(sorted(found, key=lambda entry: entry.upper))

@@ -192,8 +192,6 @@ CONTACT = (
        value=dict(state=each([0.0], [NAN, 0.0]), count=-1, factors=each([1.1], [1.0, 1.0, 0.0]))),
     of(contact.band, BAND | dict(period=4),
        kind=dict(period="p4"), value=dict(period=1, free_period=-1.0, whole_turns=-1, y_line=3)),
-    of(contact.bands, BAND | dict(periods=(3, 4)),
-       kind=dict(periods=3), value=dict(periods=told((3, 1), "period is 1 drive periods"), restitution=1.5)),
     of(contact.maximal_period, lambda: dict(nordmark=nordmark()),
        kind=dict(nordmark=each(None, 4, [nordmark()]))),
     of(contact.maximal_periods, lambda: dict(nordmark=nordmark()),

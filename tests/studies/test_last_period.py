@@ -18,10 +18,6 @@ from studies.shell.scene import single_mode_at
 NAMES = ("map", "Eq. (1)", "beam")
 
 
-def single(scene, frequency):
-    return StroboscopicMap(oscillator=single_mode_at(scene, frequency))
-
-
 def change(scene, parameter, sign):
     return next(c for c in changes_of(scene) if (c.parameter, c.sign) == (parameter, sign))
 
@@ -97,7 +93,7 @@ def test_strobe_points_run_together_as_m_grows(letter_scene, monkeypatch):
     sigma, rows = AMPLITUDE_STABILITY, []
     noises = [DriveNoise(stability=sigma, correlation_s=time) for time in (0.0, 100.0)]
     for m in (6, 9, 13):
-        strobed = single(letter_scene, frequency_of(letter_scene, m))
+        strobed = StroboscopicMap(oscillator=single_mode_at(letter_scene, frequency_of(letter_scene, m)))
         row, orbit = clouds_of(noises, ("Eq. (1)", strobed, m)), born(strobed).end
         spread = cloud(strobed.at(1e-3), orbit, m, deviation=sigma)  # second route: covariances
         centre = strobed.tip(strobed.at(1e-3).orbit(orbit, m).points)

@@ -59,16 +59,6 @@ def test_what_settles_is_where_the_orbit_is_in_closed_form(single, rows, monkeyp
         assert found.highest_s == pytest.approx(has.highest_s, abs=3e-7)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(("f", "m"), [(21.50, 4), (23.40, 10)])
-def test_bisected_ends_are_those_of_a_fine_grid(single, rows, f, m):
-    """Every 2 us of the stretch of p4 and p10, on which the six together rest, and 30 us beyond its ends."""
-    found = rows[1e-3, f"p{m}"]
-    grid = np.arange(found.lowest_s - 31e-6, found.highest_s + 31e-6, 2e-6)
-    held = np.array([is_born(single, 1e-3, f, period) for period in grid])
-    assert np.array_equal(held, (grid >= found.lowest_s) & (grid <= found.highest_s))
-
-
 def test_the_six_contradict_the_printed_period_in_the_map_by_p10_alone(rows):
     both, wider = rows[0.0, "all"], rows[0.0, "all, f +- 0.005 Hz"]
     assert (both.from_m, both.to_m) == (8, 10)

@@ -22,10 +22,6 @@ def wall_at(frequency: float, hardness: float) -> SoftWall:
     return SoftWall(oscillator=single_mode_at(SCENE, frequency), hardness=hardness)
 
 
-def measured_kick(wall: SoftWall, peak: float) -> float:
-    return first_collision(wall.struck.with_excess(peak)).kick_velocity
-
-
 # one collision
 
 
@@ -34,7 +30,7 @@ def test_kick_of_small_peaks_and_the_rate_of_its_error(hardness):
     wall, error = wall_at(22.2, hardness), []
     for z in (0.05, 0.1):
         peak = wall.peak_of(z)
-        kick = measured_kick(wall, peak)
+        kick = first_collision(wall.struck.with_excess(peak)).kick_velocity
         # impulse of the parabola by quadrature, with the stiffness that the wall adds
         gap = wall.oscillator.stop.gap
         span = math.sqrt(2.0 * peak * gap / wall.deceleration)

@@ -13,7 +13,7 @@ from contact import first_collision, simulate
 from contact.integrators import Exact, Splitting
 from studies.methods.stability import explicit, splitting, threshold
 from studies.methods.stability.false_restitution import outcomes
-from studies.methods.stability.free_mass import LAWS, energy_after
+from studies.methods.stability.free_mass import energy_after
 from studies.methods.stability.implicit_energy import STIFF_GROWTH, evenly, single_contact, stiff_contacts
 from studies.methods.stability.lasting_contact import pressed
 from studies.shell.scene import beam_at
@@ -35,16 +35,6 @@ def test_a_threshold_is_found_over_many_decades_and_only_if_it_was_seen_on_both_
     assert threshold(lambda x: x < 1e-5, (1.0, 0.1, 1e-9, 1e-12), 1e-6) == pytest.approx(1e-5, rel=1e-6)
     assert threshold(lambda x: True, (1.0, 2.0), 0.1) is None
     assert threshold(lambda x: False, (1.0, 2.0), 0.1) is None
-
-
-def closed_form_stiffness(model: ModalModel, step: float) -> float:
-    """Where an eigenvalue of kick-flight-kick passes -1, for omega h < pi: with the flow (A, B; C, D) of each
-    mode and its determinant e, 1/k = h sum_k phi_k^2 B_k/(1 + A_k + D_k + e_k) [N/m]."""
-    half = 0.5 * model.decay_rate
-    damped = np.sqrt(model.omega**2 - half**2)
-    fade = np.exp(-half * step)
-    sine, trace = fade * np.sin(damped * step) / damped, 2.0 * fade * np.cos(damped * step)
-    return 1.0 / (step * float(np.sum(model.phi**2 * sine / (1.0 + trace + fade**2))))
 
 
 # central difference
@@ -82,26 +72,24 @@ def test_lagged_damping_has_a_sharp_limit_in_contact_and_the_package_refuses_at_
 @pytest.mark.parametrize("x", [0.9, 1.2, 1.8])
 def test_energy_of_a_short_contact_is_that_of_the_closed_form_and_can_be_made(x):
     parts = (np.arange(16) + 0.5) / 16
-    found = explicit.energies("linear", x, parts)
+    found = explicit.energies(x, parts)
     assert found == pytest.approx([explicit.rebound_ratio(x, s) ** 2 for s in parts], rel=1e-10)
     bound = 1.0 / (1.0 - 0.25 * x * x)
     assert 1.0 + 0.3 * (bound - 1.0) < np.max(found) <= bound * (1 + 1e-12)
     assert 1.0 / bound * (1 - 1e-12) <= np.min(found) < 0.9
-    for law in LAWS:
-        assert np.abs(energy_after(Exact(), law, x, parts) - 1.0).max() < 1e-11
+    assert np.abs(energy_after(Exact(), x, parts) - 1.0).max() < 1e-11
 
 
 # splitting
 
 
 @pytest.mark.parametrize(("count", "angle"), [(1, 1.0), (3, 1.0), (3, 2.5)])
-def test_order_2_fails_where_the_closed_form_says_and_is_refused_there(count, angle):
-    """By the closed form, the motion, and the spectral radius by which the package refuses."""
+def test_order_2_fails_at_its_limit_and_is_refused_there(count, angle):
+    """By the motion, and the spectral radius by which the package refuses."""
     model = MODEL.truncated(count)
     row = splitting.limit(model, angle)
     assert row.measured == pytest.approx(row.theory, rel=1e-6) and row.refused is True
     method = Splitting(step=angle / float(model.omega[-1]))
-    assert closed_form_stiffness(model, method.step) == pytest.approx(row.theory, rel=1e-9)
     simulate(*pressed(model, 0.99 * row.theory), duration=40 * method.step, method=method)
 
 
@@ -114,7 +102,6 @@ def test_an_infinitely_stiff_contact_multiplies_the_speed_as_derived():
     after = single_contact("trapezoidal rule", np.full(places.size, 1e5), places)
     speed = np.where(places < 2 / 3, 3 - 4 * places, 8 * places - 5)
     assert np.sqrt(after) == pytest.approx(speed, rel=1e-3)
-    assert float(np.mean(np.log(speed**2))) == pytest.approx(2.5 * math.log(3) - 2, abs=2e-3)
 
 
 def test_the_trapezoidal_rule_multiplies_the_energy_of_a_stiff_contact_by_e_to_the_0_7465():

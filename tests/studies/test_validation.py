@@ -14,13 +14,7 @@ from scipy.optimize import brentq
 from contact import LinearContact, NewtonRestitution, NotPeriodic, State, Stop, StroboscopicMap, simulate
 from studies.methods.validation import __main__ as program
 from studies.methods.validation.one_mode import driven
-from studies.methods.validation.printed import compared
 from studies.methods.validation.two_beams import both_beams
-
-
-@pytest.mark.parametrize(("ours", "verdict"), [(1.05, "agrees"), (0.85, "differs"), (1.0, "agrees")])
-def test_verdicts(ours, verdict):
-    assert compared("a", "b", 1.0, ours, 0.1).verdict == verdict
 
 
 def test_every_source_is_compared_and_one_that_fails_is_a_failed_row(run_study, monkeypatch):

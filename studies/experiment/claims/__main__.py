@@ -15,7 +15,7 @@ born period of the beams by following their motion; p_m of the overdamped map, i
 W. Chin, E. Ott, H. E. Nusse, C. Grebogi, Phys. Rev. E 50 (1994) 4427.
 
 Run:     python -m studies claims [--positions N]
-Writes:  loss.csv, universality.csv, and the figures loss, universality
+Writes:  loss.csv, universality.csv, and the figure loss
 """
 
 from __future__ import annotations
@@ -123,18 +123,15 @@ def energy_loss(scene: Scene, run: Run) -> Mapping[str, object]:
 
 
 def universality(scene: Scene, run: Run, *, positions: int) -> Mapping[str, object]:
-    """Born periods of several springs beside the bands of the map: compute, store, draw and judge.
+    """Born periods of several springs beside the bands of the map: compute, store and judge.
 
     The claim is about the limit rho -> 0+. Over whole bands secondary bifurcations come before the born
     excess. It is therefore judged in the quarter of each band next to its upper edge, where the hysteresis is
     small. Where a spring disagrees there, it is judged again at a sixteenth of the excess. A cell without a
     period counts as disagreement.
     """
-    from studies.experiment.claims import figure
-
     rows, excess = born_everywhere(scene, run, positions), scene.scan.born_excess
     run.table("universality", rows, "Born period, and that of the map as rho -> 0+.", of=Born, show=())
-    run.figure("universality", figure.draw_born(scene, rows), figure.BORN)
     failed = any(row.period is None for row in rows)
     agree = {
         name: float(np.mean([row.agrees for row in rows if row.spring == name]))

@@ -6,10 +6,8 @@
     orbit        the same, but the collision of the orbit that settles at the letter's Fig. 4
     search       tip mass and restitution of the contact itself together
 
-Beside what `contact.collisions` measures a row holds
-
-    arc_s          v/a, the time in which the arc of the single mode beyond the gap reaches its top [s]
-    energy_share   energy given to the higher modes over that of the approach, v^2/(2 phi_1^2) [1]
+Beside what `contact.collisions` measures a row holds `arc_s` = v/a [s], the time in which the arc of the
+single mode beyond the gap reaches its top.
 
 Between the cases of a curve restitution has a corner where the kick is 1, its square has none. Smallest
 values over the tip mass are therefore read off monotone splines through the kick and through
@@ -84,7 +82,6 @@ class Approach:
     kick: float = math.nan
     contact_s: float = math.nan
     arc_s: float = math.nan
-    energy_share: float = math.nan
     impacts: int = 0
     forced_by_ringing: bool = False
 
@@ -114,7 +111,6 @@ class Case:
             found = first_collision(self.oscillator)
         if found is None:
             return row
-        mode_1 = 2.0 * float(self.oscillator.model.phi[0]) ** 2
         return replace(
             row,
             restitution=found.restitution,
@@ -122,7 +118,6 @@ class Case:
             kick=found.kick,
             contact_s=found.contact_time,
             arc_s=found.approach / found.deceleration,
-            energy_share=found.energy_to_higher_modes * mode_1 / found.approach**2,
             impacts=found.impacts,
             forced_by_ringing=found.forced_by_ringing,
         )

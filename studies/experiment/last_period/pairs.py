@@ -28,7 +28,7 @@ EXCESSES = 0.0, AMPLITUDE_STABILITY, 1e-3, 4e-3, 1e-2
 PRINTED_S = FREE_PERIOD_S - FREE_PERIOD_ERROR_S, FREE_PERIOD_S, FREE_PERIOD_S + FREE_PERIOD_ERROR_S
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Interval:
     """Free periods [s] at which p_m of one pair, or of several, is born; empty if lowest is above highest.
 
@@ -88,15 +88,7 @@ def intervals_of(single: ImpactOscillator, excess: float) -> list[Interval]:
         low, first = max((low * (1.0 - part), m) for low, _, m, part in known)
         high, last = min((high * (1.0 + part), m) for _, high, m, part in known)
         missed = PRINTED_S[0] - high if high < PRINTED_S[0] else min(PRINTED_S[2] - low, 0.0)
-        return Interval(
-            pairs=words,
-            excess=excess,
-            lowest_s=low,
-            highest_s=high,
-            from_m=first,
-            to_m=last,
-            missed_by_s=missed,
-        )
+        return Interval(words, excess, low, high, first, last, missed)
 
     every = shared("all", list(ends))
     rows = [*(shared(f"p{m}", [m]) for m in ends), every]

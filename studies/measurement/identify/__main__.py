@@ -47,7 +47,7 @@ from contact import ImpactOscillator
 from studies.measurement.identify import coverage as covering
 from studies.measurement.identify import figure
 from studies.measurement.identify.displacement import SENSOR
-from studies.measurement.identify.estimates import SHOWN, Estimate, Quality, estimates_of, quality_of, traded
+from studies.measurement.identify.estimates import SHOWN, Estimate, Quality, estimates_of, traded
 from studies.measurement.identify.fit import Fit
 from studies.measurement.identify.fit import fit as fitted
 from studies.measurement.identify.next_measurement import (
@@ -226,7 +226,10 @@ def report(run: Run, found: Mapping[str, Fit]) -> dict[str, Any]:
     profiles = {name: traded(one, run.quick) for name, one in found.items()}
     estimates = [row for name, one in found.items() for row in estimates_of(name, one, profiles[name])]
     run.table("parameters", estimates, "Standard errors and 90 % intervals.", of=Estimate, show=SHOWN)
-    quality = [quality_of(name, one) for name, one in found.items()]
+    quality = [
+        Quality(name, len(one.residuals), one.noise, one.freedom, one.chance, one.too_small)
+        for name, one in found.items()
+    ]
     run.table("quality", quality, "The residuals of the fits.", of=Quality)
     for row in (row for row in quality if row.too_small):
         run.say(

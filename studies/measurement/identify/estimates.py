@@ -42,7 +42,7 @@ class Estimate:
     correlations: tuple[float, ...]
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Quality:
     """The residuals of a fit.
 
@@ -109,15 +109,3 @@ def traded(found: Fit, quick: bool) -> list[Profile]:
         for i in kept[: 1 if quick else None]
         for row in profile(found, found.names[i], found.names[partners[i]], points=5 if quick else 9)
     ]
-
-
-def quality_of(name: str, found: Fit) -> Quality:
-    """The residuals of a fit."""
-    return Quality(
-        record=name,
-        rows=len(found.residuals),
-        noise=found.noise,
-        freedom=found.freedom,
-        chance=found.chance,
-        too_small=found.too_small,
-    )

@@ -25,8 +25,8 @@ Made = tuple[Place, Protocol, Scans]
 class End:
     """Excess at which an orbit ends in scans: `median` with its standard `error`, 5 % (`low`) and 95 %.
 
-    The `end` is one of `ENDS`.  Slips and touches have a `formula`, with its 5 and 95 %; `off` is formula
-    less median in standard errors.
+    The `end` is one of `ENDS`.  Slips and touches have a `formula` of the median; `off` is formula less
+    median in standard errors.
     """
 
     frequency_hz: float
@@ -39,9 +39,7 @@ class End:
     median: float
     high: float
     error: float
-    formula_low: float | None = None
     formula: float | None = None
-    formula_high: float | None = None
     off: float | None = None
 
 
@@ -76,11 +74,7 @@ def ends_of(made: Made) -> list[End]:
         if values.size < 2:
             continue
         law = law_of(place, protocol, name) if name in ("slipped", "touched") else None
-        formula = dict(
-            zip(
-                ("formula_low", "formula", "formula_high"), quantiles(law, PARTS) if law else (), strict=False
-            )
-        )
+        formula = quantiles(law, (0.5,))[0] if law else None
         # ranks half a binomial standard deviation, sqrt(n)/2, below and above the median
         ranks = 0.5 * (values.size + np.array([-1.0, 1.0]) * math.sqrt(values.size))
         below, above = np.interp(ranks, np.arange(values.size) + 0.5, values)
@@ -97,8 +91,8 @@ def ends_of(made: Made) -> list[End]:
                 median=median,
                 high=high,
                 error=error,
-                off=(formula["formula"] - median) / error if formula else None,
-                **formula,
+                formula=formula,
+                off=None if formula is None else (formula - median) / error,
             )
         )
     return rows

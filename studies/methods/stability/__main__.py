@@ -16,7 +16,7 @@ A row: family; method; case; the parameter with its unit; theory (empty where it
 comes out (empty where there is nothing to refuse).
 
 Run:     python -m studies stability [--families explicit,splitting] [--quick]
-Writes:  limits.csv (all rows); for four families NAME.npz (arrays of its figure) and NAME.png
+Writes:  limits.csv (all rows); for three families NAME.npz (arrays of its figure) and NAME.png
 """
 
 from __future__ import annotations

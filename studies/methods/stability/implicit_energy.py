@@ -45,7 +45,7 @@ def single_contact(label: str, products: np.ndarray, places: np.ndarray) -> np.n
     and place u of the touch in its step."""
     method = IMPLICIT[label](1.0)
     pairs = zip(products.tolist(), places[:, None], strict=True)
-    return np.concatenate([energy_after(method, "linear", x, place) for x, place in pairs])
+    return np.concatenate([energy_after(method, x, place) for x, place in pairs])
 
 
 def evenly(product: float, count: int) -> tuple[np.ndarray, np.ndarray]:

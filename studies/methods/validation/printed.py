@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Printed:
     """One number of a source, what is found here, and whether they agree within the source's error."""
 
@@ -24,13 +24,5 @@ def compared(
 ) -> Printed:
     """A row: "agrees" within the source's error, "differs" beyond it."""
     difference = ours - published
-    return Printed(
-        source=source,
-        quantity=quantity,
-        published=published,
-        ours=ours,
-        difference=difference,
-        source_error=source_error,
-        verdict="agrees" if abs(difference) <= source_error else "differs",
-        note=note,
-    )
+    verdict = "agrees" if abs(difference) <= source_error else "differs"
+    return Printed(source, quantity, published, ours, difference, source_error, verdict, note)

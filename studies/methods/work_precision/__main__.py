@@ -22,7 +22,7 @@ a second is a row that says so. Timings are taken one at a time, so that --worke
 the modes left out of the beam weigh beside all this is told by `studies.methods.adequacy`.
 
 Run:     python -m studies work_precision
-Writes:  rows.csv, cheapest.csv, costs.csv, gradients.csv; work_precision, costs, gradients (png, pdf)
+Writes:  rows.csv, cheapest.csv, costs.csv, gradients.csv; work_precision (png, pdf)
 """
 
 from __future__ import annotations
@@ -87,13 +87,9 @@ def work_precision(scene: Scene, run: Run) -> Mapping[str, object]:
     ratios = costs.ratios_of(spent)
     run.table("costs", spent, "Time per drive period and per collision.", of=costs.Cost)
     run.say(", ".join(f"{name} {ratio:.3g}" for name, ratio in ratios.items()))
-    run.figure(
-        "costs", costs.draw_costs(spent), "Time per drive period of the beam against the number of modes."
-    )
     paths = [] if run.quick else gradients.gradients(single_mode_at(scene, GRADIENT_HZ).with_excess(1e-3))
     if paths:
-        run.table("gradients", paths, gradients.CHART, of=gradients.Gradient, show=())
-        run.figure("gradients", gradients.draw_gradients(paths), gradients.CHART)
+        run.table("gradients", paths, "Error and time of a gradient through impacts.", of=gradients.Gradient)
     for row in rows:
         if row.family == EXACT and row.failed:
             run.failed(f"{row.problem}, {row.method}", row.failed)

@@ -14,7 +14,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from statistics import median
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -24,9 +24,6 @@ from studies.methods.peers import OutsideSolver, missing_solvers
 from studies.methods.work_precision.timing import Orbit, in_turns
 from studies.shell.scene import Scene, beam_at, harmonic, model_of, single_mode_at
 from studies.shell.study import Run
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 OURS, HEYOKA = "grazing-spring", "heyoka"
 SINGLE, BEAM, FREE = "single mode", "beam, hertz contact", "beam, no touch"
@@ -44,9 +41,6 @@ TOLERANCE = 1e-7
 
 SETTLING = 2000
 """Drive periods before the clock starts: a free motion falls to 0.92 in each."""
-
-DRAWN = ((BEAM, OURS, "Hertz contact"), (FREE, OURS, "no touch"), (BEAM, HEYOKA, "heyoka, Hertz contact"))
-"""Case, tool and title of the lines of the figure."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -129,11 +123,6 @@ def rows_of(case: str, oscillator: ImpactOscillator, *, quick: bool) -> list[Cos
     ]
 
 
-def costs_of(rows: Sequence[Cost], case: str, tool: str) -> list[tuple[int, float]]:
-    """Numbers of modes and times of a case and tool, the fewest modes first."""
-    return sorted((row.modes, row.us_per_period) for row in rows if (row.case, row.tool) == (case, tool))
-
-
 def ratios_of(rows: Sequence[Cost]) -> dict[str, float]:
     """heyoka's time over ours for Eq. (1) over the frequencies, and the exponent of the beam's growth between
     the two largest numbers of modes."""
@@ -141,26 +130,7 @@ def ratios_of(rows: Sequence[Cost]) -> dict[str, float]:
     over = [cost / costs[OURS, frequency] for (tool, frequency), cost in costs.items() if tool == HEYOKA]
     named = (("least", min), ("median", median), ("largest", max))
     ratios = {f"single_mode_{name}": chosen(over) for name, chosen in named if over}
-    for (few, low), (many, high) in list(pairwise(costs_of(rows, BEAM, OURS)))[-1:]:
+    beam = sorted((row.modes, row.us_per_period) for row in rows if (row.case, row.tool) == (BEAM, OURS))
+    for (few, low), (many, high) in list(pairwise(beam))[-1:]:
         ratios["hertz_growth_with_modes"] = math.log(high / low) / math.log(many / few)
     return ratios
-
-
-def draw_costs(rows: Sequence[Cost]) -> Figure:
-    """Time per drive period against the number of modes."""
-    from studies.shell import plotting  # matplotlib is slow to import
-
-    with plotting.house_style():
-        figure, axes = plotting.new_figure(width=plotting.COLUMN, height=0.075)
-        for number, (case, tool, title) in enumerate(DRAWN):
-            if cost := costs_of(rows, case, tool):
-                axes.plot(*zip(*cost, strict=True), **plotting.series(number), label=title)
-        ticks = sorted({row.modes for row in rows if row.case == BEAM})
-        axes.set_xscale("log")
-        axes.set_yscale("log")
-        axes.set_xticks(ticks, [str(tick) for tick in ticks])
-        axes.minorticks_off()
-        plotting.label(axes.xaxis, "number of modes")
-        plotting.label(axes.yaxis, "time per drive period", "µs")
-        figure.legend(loc="outside lower center", ncols=2)
-    return figure

@@ -17,7 +17,6 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
-from matplotlib.figure import Figure
 from mpmath import matrix, mp, mpf
 from numpy.typing import NDArray
 
@@ -25,11 +24,9 @@ from contact import ImpactOscillator, State, simulate
 from contact.orbits import motion_derivatives
 from studies.methods.work_precision.timing import timed
 from studies.physics.parameters import changes_of, parameters_of, with_values
-from studies.shell import plotting
 
 Array = NDArray[np.float64]
 
-CHART = "Error of a gradient through impacts against the step, and against the time it takes."
 NAMES = ("free_period", "decay_rate", "gap", "restitution", "frequency", "amplitude")
 PERIODS, REPEATS = 20, 11
 """Drive periods; runs of which the median processor time counts."""
@@ -120,25 +117,3 @@ def gradients(oscillator: ImpactOscillator) -> list[Gradient]:
     for step in np.logspace(-3, -12, 10):
         measured("central differences", step, partial(differences, step))
     return rows
-
-
-@plotting.in_house_style
-def draw_gradients(rows: Sequence[Gradient]) -> Figure:
-    """Error against the step, and against time."""
-    figure, axes = plotting.new_figure(1, 2, width=plotting.PAGE, height=0.075)
-    for i, name in enumerate(dict.fromkeys(row.method for row in rows)):
-        own = [row for row in rows if row.method == name and row.error is not None]
-        error = [row.error for row in own]
-        if own[0].setting is None:
-            axes[0].axhline(error[0], color=plotting.BLACK)
-        else:
-            axes[0].plot([row.setting for row in own], error, **plotting.series(i))
-        axes[1].plot([row.milliseconds for row in own], error, **plotting.points(i), label=name)
-    for i, across in enumerate((("relative step",), ("time", "ms"))):
-        axes[i].set(xscale="log", yscale="log")
-        axes[i].xaxis.set_minor_formatter("")
-        plotting.label(axes[i].xaxis, *across)
-        plotting.label(axes[i].yaxis, "error of the gradient")
-        plotting.panel(axes[i], i)
-    axes[1].legend(loc="best")
-    return figure

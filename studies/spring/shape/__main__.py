@@ -35,15 +35,7 @@ from functools import partial
 from studies.shell.scene import Scene, model_of
 from studies.shell.study import Run, study
 from studies.spring.shape.finite_amplitude import Survival, springs_of, survivals
-from studies.spring.shape.model_error import (
-    COARSE,
-    FINE,
-    MODES,
-    OrbitEnds,
-    orbit_rows,
-    plates_of,
-    with_refitted,
-)
+from studies.spring.shape.model_error import COARSE, FINE, MODES, OrbitEnds, models_of, orbit_rows, plates_of
 from studies.spring.shape.shapes import TITLES, Reading, ReadingRow, reading_row, shapes_of
 
 
@@ -82,7 +74,7 @@ def compare_plate(scene: Scene, run: Run) -> list[OrbitEnds]:
         run.say("The part on the plate is left out: it needs a flat U with a harmonic drive.")
         return []
     beam, plates = model_of(scene), plates_of(scene, COARSE if run.quick else FINE)
-    springs, frequencies = with_refitted(scene, run, plates, beam), scene.drive.frequencies_hz
+    springs, frequencies = models_of(plates, beam), scene.drive.frequencies_hz
     orbits = orbit_rows(scene, run, springs, frequencies[:: 2 if run.quick else 1])
     kept = (
         f"Ends of the orbits on the way down, by plates of {MODES} modes and the beam with {beam.n_modes}. "

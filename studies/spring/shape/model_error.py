@@ -3,9 +3,8 @@
 The plate replaces the beam in the contact problem. It carries the ball on a point of the sheet, or on a rigid
 seat of the ball's radius; the real mount was not measured. All frequencies of a plate are multiplied by one
 factor, so that mode 1 has the frequency of the beam's. Its decay rates are interpolated in the frequency from
-the beam's. Gap, drive and contact law stay. A "refitted" plate has another mass of the ball, chosen so that
-its first collision has the same kick as the beam's. The modes are extrapolated from two meshes, the second
-with elements half as long, as their errors fall as h^2.
+the beam's. Gap, drive and contact law stay. The modes are extrapolated from two meshes, the second with
+elements half as long, as their errors fall as h^2.
 """
 
 from __future__ import annotations
@@ -16,11 +15,9 @@ from functools import partial
 
 import numpy as np
 import skfem as sk
-from scipy.optimize import brentq
 
 from beam import ModalModel, Tip
-from contact import Collision, StroboscopicMap, first_collision
-from studies.physics.calibration import Targets
+from contact import StroboscopicMap
 from studies.physics.descriptions import born_and_lowered
 from studies.shell.scene import READOUT, Scene, beam_at, sections_of
 from studies.shell.study import Run
@@ -35,15 +32,8 @@ COARSE, FINE = (1, 2), (2, 3)
 WIDEST_SEAT = 0.8
 """Radius of the seat over half of the width, at most: the rim beside it needs room."""
 
-REFITS = (-0.7, 2.0)
-"""Bounds of the search for the refitted ball: added mass over the mass of the ball."""
-
-PLATES = {
-    "point": "ball on a point",
-    "seat": "ball on a rigid seat",
-    "point_refitted": "on a point, refitted",
-    "seat_refitted": "on a seat, refitted",
-}
+PLATES = ("point", "seat")
+"""Mounts of the ball: on a point of the sheet, and on a rigid seat."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,8 +49,6 @@ class OrbitEnds:
     beam: float | None = None
     point: float | None = None
     seat: float | None = None
-    point_refitted: float | None = None
-    seat_refitted: float | None = None
 
     @property
     def factors(self) -> list[float]:
@@ -69,22 +57,8 @@ class OrbitEnds:
         return [end / self.beam for end in ends if end and self.beam]
 
 
-@dataclass(frozen=True, kw_only=True)
-class Spring:
-    """The modal model of the beam or of a plate."""
-
-    name: str
-    model: ModalModel
-
-    def collision(self, scene: Scene) -> Collision:
-        """The first collision."""
-        targets = Targets.of(scene)
-        driven = beam_at(scene, targets.frequency_hz, self.model)
-        return first_collision(driven.with_excess(targets.excess))
-
-
 def plates_of(scene: Scene, cells: tuple[int, int]) -> dict[str, PlateModes]:
-    """Modes by name of the mount, "point" and "seat"; `cells` across seat and rim as in `half_u`."""
+    """Modes by name of the mount, as in `PLATES`; `cells` across seat and rim as in `half_u`."""
     keys, (bare, taped) = scene.spring, sections_of(scene)
     tip = Tip(mass=scene.tip.mass_kg, rotary_inertia=scene.tip.rotary_inertia_kg_m2)
     coarse, fine = (
@@ -103,67 +77,50 @@ def plates_of(scene: Scene, cells: tuple[int, int]) -> dict[str, PlateModes]:
     def modes(mesh: sk.MeshTri, name: str) -> PlateModes:
         return plate_modes(mesh, bare, taped or bare, tip, MODES, seated=name == "seat")
 
-    return {name: modes(fine, name).extrapolated(modes(coarse, name)) for name in ("point", "seat")}
+    return {name: modes(fine, name).extrapolated(modes(coarse, name)) for name in PLATES}
 
 
-def with_refitted(scene: Scene, run: Run, plates: Mapping[str, PlateModes], beam: ModalModel) -> list[Spring]:
-    """The beam, the two plates and, without --quick, the two refitted plates."""
-    own = scene.tip.mass_kg
-    found = [Spring(name="beam", model=beam)]
-    kick = found[0].collision(scene).kick
-
-    def plate(name: str, modes: PlateModes, added: float = 0.0) -> Spring:
-        loaded = modes.with_more_mass(added)
-        omega = loaded.omega * (beam.omega[0] / loaded.omega[0])
-        rates = np.interp(omega, beam.omega, beam.decay_rate)
-        model = ModalModel(
+def models_of(plates: Mapping[str, PlateModes], beam: ModalModel) -> dict[str, ModalModel]:
+    """The modal models of the beam and of the plates, by name."""
+    found = {"beam": beam}
+    for name, modes in plates.items():
+        omega = modes.omega * (beam.omega[0] / modes.omega[0])
+        found[name] = ModalModel(
             omega=omega,
-            decay_rate=rates,
-            phi=loaded.phi,
-            participation=loaded.participation,
-            readouts={READOUT: loaded.phi},
+            decay_rate=np.interp(omega, beam.omega, beam.decay_rate),
+            phi=modes.phi,
+            participation=modes.participation,
+            readouts={READOUT: modes.phi},
         )
-        return Spring(name=name, model=model)
-
-    found += [plate(name, modes) for name, modes in plates.items()]
-    for name, modes in () if run.quick else plates.items():
-
-        def excess(added: float, modes: PlateModes = modes) -> float:
-            return plate("", modes, added).collision(scene).kick - kick
-
-        low, high = (share * own for share in REFITS)
-        if excess(low) < 0.0 < excess(high):
-            found.append(plate(f"{name}_refitted", modes, float(brentq(excess, low, high, xtol=1e-9 * own))))
-        else:
-            run.failed(f"plate, {PLATES[name]}", "no mass of the ball gives the kick of the beam")
     return found
 
 
 @dataclass(frozen=True)
 class Cell:
-    """A spring at one drive frequency [Hz]."""
+    """A spring, by its name and modal model, at one drive frequency [Hz]."""
 
-    spring: Spring
+    spring: str
+    model: ModalModel
     frequency: float
 
     def __str__(self) -> str:
-        return f"{self.spring.name}, {self.frequency:g} Hz"
+        return f"{self.spring}, {self.frequency:g} Hz"
 
     def end(self, scene: Scene) -> tuple[int, float | None]:
         """The period just above grazing, and the excess at which it ends on the way down."""
-        strobed = StroboscopicMap(oscillator=beam_at(scene, self.frequency, self.spring.model))
+        strobed = StroboscopicMap(oscillator=beam_at(scene, self.frequency, self.model))
         orbit, end = born_and_lowered(strobed, scene.scan.born_excess, max(scene.scan.settle_cycles, 1))
         return orbit.period, None if end is None else end.excess
 
 
 def orbit_rows(
-    scene: Scene, run: Run, springs: Sequence[Spring], frequencies: Sequence[float]
+    scene: Scene, run: Run, springs: Mapping[str, ModalModel], frequencies: Sequence[float]
 ) -> list[OrbitEnds]:
     """The orbits at each frequency."""
-    cells = [Cell(spring, frequency) for frequency in frequencies for spring in springs]
+    cells = [Cell(*spring, frequency) for frequency in frequencies for spring in springs.items()]
     found, rows = iter(run.attempt(partial(Cell.end, scene=scene), cells, "ends of orbits")), []
     for frequency in frequencies:
-        known = {spring.name: one for spring, one in zip(springs, found, strict=False) if one}
+        known = {name: one for name, one in zip(springs, found, strict=False) if one}
         rows.append(
             OrbitEnds(
                 frequency_hz=frequency,

@@ -36,7 +36,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 import skfem as sk
 from numpy.typing import NDArray
-from scipy.linalg import eigh
 from scipy.sparse import csc_array, csr_array, eye_array, hstack
 from scipy.sparse.linalg import LinearOperator, eigsh, splu
 from skfem.helpers import dd, ddot, trace
@@ -61,13 +60,6 @@ class PlateModes:
         """Extrapolation to h = 0 by h^2, from these modes and `coarser` ones on elements twice as long."""
         pairs = [(fine, vars(coarser)[name]) for name, fine in vars(self).items()]
         return PlateModes(**dict(zip(vars(self), (a + (a - b) / 3.0 for a, b in pairs), strict=True)))
-
-    def with_more_mass(self, mass: float) -> PlateModes:
-        """The modes with `mass` [kg] added at the ball, in the space of these modes."""
-        square, a = eigh(np.diag(self.omega**2), np.eye(self.phi.size) + mass * np.outer(self.phi, self.phi))
-        a *= np.sign(self.phi @ a)
-        participation = (self.participation + mass * self.phi) @ a
-        return PlateModes(omega=np.sqrt(square), phi=self.phi @ a, participation=participation)
 
 
 def per_area(section: StripSection) -> tuple[float, float, float]:
