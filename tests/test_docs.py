@@ -5,7 +5,6 @@ The long form runs each study in full; results that are stored already can be na
 
 from __future__ import annotations
 
-import csv
 import json
 import os
 import re
@@ -19,6 +18,7 @@ import pytest
 from studies.experiment.transitions.__main__ import transitions
 from studies.experiment.transitions.model import rows_at
 from studies.physics.least_model import least_modes
+from studies.pictures import costs_drawn
 from studies.shell.programs import MAIN, in_words, run_times
 from studies.shell.programs import names as programs
 from studies.shell.scene import model_of, read_scene
@@ -60,9 +60,18 @@ def test_the_run_times_are_those_of_the_table():
 
 
 def test_the_costs_are_those_of_the_table():
-    with (ROOT / "docs" / "costs.csv").open(encoding="utf-8") as stream:
-        costs = {row["method"]: row for row in csv.DictReader(stream)}
-    raise NotImplementedError
+    costs = costs_drawn()
+    for name, row in costs.items():
+        pairs = [(row[f"microseconds_at_1e-{n}"], row[f"missed_at_1e-{n}"]) for n in (4, 8)]
+        told = [word for us, part in pairs for word in (time_in_words(us), f"{part:.0%}".replace("%", " %"))]
+        assert f"| {cells(name, *told)} |".replace("| 0 % |", "| none |") in TEXTS["costs"]
+    fast, slow = (time_in_words(costs[name]["microseconds_at_1e-4"]) for name in ("exact", "SciPy DOP853"))
+    assert f"takes {fast}" in PLAIN["README"] and f"SciPy (DOP853) takes {slow}" in PLAIN["README"]
+
+
+def time_in_words(us: float) -> str:
+    """A time, as the tables have it."""
+    return f"{us:g} µs" if us < 1000.0 else f"{us / 1000.0:g} ms"
 
 
 @pytest.mark.parametrize("frequency", [pytest.param(21.50, marks=pytest.mark.slow), 22.20])
@@ -120,7 +129,10 @@ def told_by(name: str, found: dict) -> Iterator[str]:
         for f in dict.fromkeys(row["frequency_hz"] for row in rows):
             at = [row for row in rows if row["frequency_hz"] == f]
             yield cells(f"{f:.2f}", f"p{at[-1]['period']}", *(end_in_words(row["excess_down"]) for row in at))
-        off = {a["frequency_hz"]: a["excess_down"] / b["excess_down"] for a, b in zip(rows[2::4], rows[3::4])}
+        off = {
+            a["frequency_hz"]: a["excess_down"] / b["excess_down"]
+            for a, b in zip(rows[2::4], rows[3::4], strict=True)
+        }
         assert all(abs(off[f] - 1.0) < 0.1 for f in (21.5, 23.05, 23.4))
         factors = [max(off[f], 1.0 / off[f]) for f in (20.9, 22.2, 22.6)]
         yield "factors of {:.1f}, {:.1f} and {:.0f}".format(*factors)

@@ -58,4 +58,6 @@ def write_site(results: Path, page: Path, modules: Sequence[str]) -> Path:
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_text(text, encoding="utf-8")
         shutil.copyfile(page, folder / "results.html")
+        if (docs := ROOT / "docs").exists():  # what the README shows and names
+            shutil.copytree(docs, folder / "docs", dirs_exist_ok=True)
     return folder / "index.html"
