@@ -152,25 +152,30 @@ def draw_orbit(drawn: Drawn) -> Figure:
 
 
 def draw_costs(drawn: Drawn) -> Figure:
-    """Each method from its cost at an error of 1e-4 to its cost at 1e-8; the exact method as a star."""
+    """Each method from its cost at an error of 1e-4 to its cost at 1e-8; exact flights as one point, the exact
+    method as a star."""
     figure = Figure(figsize=(7.5, 4.5))
     axes = figure.add_axes((0.13, 0.135, 0.85, 0.845))
     ordered = sorted(drawn.items(), key=lambda item: item[1]["microseconds_at_1e-8"])
-    for place, (name, row) in enumerate(ordered):
-        colour, start, end = PALETTE[place], *(1e-6 * row[f"microseconds_at_1e-{n}"] for n in (4, 8))
+    lines = [name for name, row in ordered if row["error"] is None]
+    for name, row in ordered:
+        start, end = (1e-6 * row[f"microseconds_at_1e-{n}"] for n in (4, 8))
+        missed = f", {100.0 * row['missed_at_1e-8']:.0f} % missed" if row["missed_at_1e-8"] else ""
         if row["error"] is not None:
-            axes.loglog(end, row["error"], color=colour, marker="*", markersize=16.0)
-            axes.annotate(name, (end, row["error"]), (12, 0), textcoords="offset points", va="center")
+            star = not missed
+            axes.loglog(end, row["error"], "*k" if star else "ok", markersize=16.0 if star else 5.0)
+            look: Style = {"textcoords": "offset points", "va": "center", "ha": "right" if star else "left"}
+            axes.annotate(name + missed, (end, row["error"]), (-12 if star else 10, 0), **look)
             continue
-        axes.loglog([start, end], [1e-4, 1e-8], color=colour, marker="o", linewidth=2.0, markersize=5.0)
-        missed = f", {100.0 * row['missed_at_1e-8']:.0f} % missed " if row["missed_at_1e-8"] else " "
-        line = {"arrowstyle": "-", "color": colour, "relpos": (1.0, 0.5), "shrinkA": 0.0}
-        below = end, 1e-8 * 10.0 ** (0.1 - 1.1 * place)  # the further right, the lower: no line meets a word
-        look: Style = {"ha": "right", "va": "center", "arrowprops": line, "color": colour}
-        axes.annotate(name + missed, (end, 1e-8), below, **look)
-    words = "missed: share of shallow touches\nat an error of 10$^{-8}$; none elsewhere"
+        place = lines.index(name)
+        axes.loglog([start, end], [1e-4, 1e-8], "o-", color=PALETTE[place], linewidth=2.0, markersize=5.0)
+        line = {"arrowstyle": "-", "color": PALETTE[place], "relpos": (1.0, 0.5), "shrinkA": 0.0}
+        below = end, 1e-8 * 10.0 ** (-1.0 - 1.1 * place)  # the further right, the lower: no line meets a word
+        look = {"ha": "right", "va": "center", "arrowprops": line, "color": PALETTE[place]}
+        axes.annotate(f"{name}{missed} ", (end, 1e-8), below, **look)
+    words = "missed: share of shallow touches at an error of 10$^{-8}$; none elsewhere"
     axes.text(0.99, 0.02, words, transform=axes.transAxes, ha="right", color="0.4", fontsize=11.0)
-    axes.set(xlabel="time per drive period", ylabel="error", xlim=(1e-6, 0.5), ylim=(1e-17, 1e-3))
+    axes.set(xlabel="time per drive period", ylabel="error", xlim=(1e-6, 0.5), ylim=(3e-18, 1e-3))
     axes.xaxis.set_major_formatter(EngFormatter(unit="s"))
     axes.minorticks_off()
     return figure
