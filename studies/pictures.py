@@ -1,4 +1,4 @@
-"""The two pictures of the README: an orbit of period four, and error against cost.
+"""The two pictures of the README: an orbit diagram, and error against cost.
 
 p4.png shows the spring of the letter's scene at an impact of p4, relative to its base and in true scale.
 Beside it stands the orbit diagram around p4.  costs.png shows the error of each method against its time for a
