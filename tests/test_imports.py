@@ -28,35 +28,9 @@ DOORS = ("beam", "beam.space", "contact", "contact.orbits", "contact.integrators
 """Where studies get names from: what these export, and nothing behind them."""
 
 FLOW = {
-    "beam": (
-        "parameters",
-        "material",
-        "section",
-        "centreline",
-        "spring",
-        "assembly",
-        "modes",
-        "reduction",
-        "space",
-        "spring_mesh",
-        "export",
-    ),
-    "contact": (
-        "machine.compiled",
-        "laws",
-        "flight",
-        "oscillator",
-        "trajectory",
-        "touch",
-        "engine",
-        "integrators",
-        "simulation",
-        "sensitivity",
-        "maps",
-        "collision",
-        "orbits",
-        "machine.warm_up",
-    ),
+    "beam": "parameters material section centreline spring assembly modes reduction space spring_mesh export",
+    "contact": "machine.compiled laws flight oscillator trajectory touch engine integrators simulation "
+    "sensitivity maps collision orbits machine.warm_up",
 }
 """Files and folders in the order in which they build on each other: none needs a later one."""
 
@@ -97,7 +71,7 @@ def graph(package: str, root: Path = ROOT) -> dict[str, set[str]]:
 
 def upward(package: str, root: Path = ROOT) -> list[str]:
     """Files of the flow that need a later one, directly or through others."""
-    edges, flow = graph(package, root), [f"{package}.{name}" for name in FLOW[package]]
+    edges, flow = graph(package, root), [f"{package}.{name}" for name in FLOW[package].split()]
     needs: dict[str, set[str]] = {}
     for name in TopologicalSorter(edges).static_order():  # raises where imports go round in a circle
         needs[name] = edges[name].union(*(needs[other] for other in edges[name]))
