@@ -152,8 +152,7 @@ def draw_orbit(drawn: Drawn) -> Figure:
 
 
 def draw_costs(drawn: Drawn) -> Figure:
-    """Each method from its cost at an error of 1e-4 to its cost at 1e-8; exact flights as one point, the exact
-    method as a star."""
+    """Each method from its cost at an error of 1e-4 to its cost at 1e-8; exact flights are a point or star."""
     figure = Figure(figsize=(7.5, 4.5))
     axes = figure.add_axes((0.13, 0.135, 0.85, 0.845))
     ordered = sorted(drawn.items(), key=lambda item: item[1]["microseconds_at_1e-8"])

@@ -18,11 +18,6 @@ from contact.orbits.branches.continuation import (
     follow,
     lowest_of,
 )
-from contact.orbits.branches.event_derivatives import (
-    doubling_derivatives,
-    graze_derivatives,
-    multiplier_derivatives,
-)
 from contact.orbits.branches.events import Event
 from contact.orbits.branches.orbit_derivatives import OrbitDerivatives, excess_derivatives, orbit_derivatives
 from contact.orbits.branches.path import follow_path

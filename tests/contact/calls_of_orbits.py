@@ -1,8 +1,6 @@
 """Public calls of `contact.orbits`: right arguments and wrong values; how it is written: calls_of_beam."""
 
-import contextlib
 import dataclasses
-from collections.abc import Callable
 
 import numpy as np
 from calls_of_beam import INF, NAN, each, of, told
@@ -17,16 +15,6 @@ P4 = told(dataclasses.replace(HERTZ.family, period=4).at_speed(0.1), "has 4 driv
 TWICE = told(dataclasses.replace(HERTZ.orbit, record=np.tile(HERTZ.orbit.record, (2, 1))), "has 2 touches")
 WIDER = dataclasses.replace(HERTZ.oscillator, stop=contact.Stop(gap=0.0108, law=HERTZ.oscillator.stop.law))
 FOREIGN = told(HERTZ.family.of(WIDER).at_speed(HERTZ.speed), "oscillator of the start is not")
-
-
-def at_event(derivatives: Callable[..., object]) -> Callable[..., None]:
-    """The derivatives of an event, of an orbit that need not be one."""
-
-    def called(**arguments: object) -> None:
-        with contextlib.suppress(contact.NoDerivative):
-            derivatives(**arguments)
-
-    return called
 
 
 CHANGE = orbits.Change(gap=1.0, frequency=1e3)
@@ -51,12 +39,7 @@ SHOOTING_CALLS = {
     "fold": lambda c: {},
     "orbits": lambda c: dict(excess=0.01),
 }
-DERIVATIVES = {
-    "orbit_derivatives": orbits.orbit_derivatives,
-    "excess_derivatives": orbits.excess_derivatives,
-    "doubling_derivatives": at_event(orbits.doubling_derivatives),
-    "graze_derivatives": at_event(orbits.graze_derivatives),
-}
+DERIVATIVES = {"orbit_derivatives": orbits.orbit_derivatives, "excess_derivatives": orbits.excess_derivatives}
 
 # fmt: off
 ORBITS = (
@@ -127,9 +110,6 @@ ORBITS = (
     *(of(call, lambda c: dict(orbit=c.orbit, changes=[CHANGE]), name=name, over="family",
          kind=dict(orbit=each(None, 0.1), changes=each(CHANGE, 3.0, ["gap"])))
       for name, call in DERIVATIVES.items()),
-    of(orbits.multiplier_derivatives,
-       lambda c: dict(found=orbits.orbit_derivatives(c.orbit, [CHANGE])), over="family",
-       kind=dict(found=each(None, 3.0, [CHANGE]))),
     of(orbits.motion_derivatives, lambda c: dict(
            oscillator=c.driven, state=c.state, changes=[CHANGE], periods=3, times=np.linspace(0.01, 0.1, 5)),
        over="starts", kind=dict(oscillator=None, state=[0.0], changes=each(CHANGE, [3.0])),

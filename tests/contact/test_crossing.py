@@ -11,7 +11,7 @@ from contact.flight.crossing import CROSSES, FREE, GRAZE_TOLERANCE, GRAZES, UNRE
 from contact.flight.elementary import EPS
 from contact.flight.modal_flow import propagate, tip_rounding
 from contact.orbits import Shooting
-from contact.orbits.branches.event_derivatives import peaks
+from contact.orbits.families.family import peaks
 
 pytestmark = pytest.mark.skipif(
     np.finfo(Real).eps > 2e-19, reason="the judge needs a long double of at least 64 bits"

@@ -7,5 +7,4 @@
 `continuation`        branches over the drive amplitude: `follow`, `fold_of`, `first_event`
 `path`                branches along any path p -> oscillator: `follow_path`
 `orbit_derivatives`   derivatives of an orbit with respect to parameters
-`event_derivatives`   derivatives of multipliers, doublings and grazes
 """

@@ -14,9 +14,8 @@ import numpy as np
 
 from beam.parameters import Array, Refusal
 from contact.errors import ContactError
-from contact.orbits.branches.event_derivatives import peaks
 from contact.orbits.families.equations import Equations, Iterate, Point, newton
-from contact.orbits.families.family import PeriodicOrbit
+from contact.orbits.families.family import PeriodicOrbit, peaks
 from contact.simulation import simulate
 
 BEND, TWIST, STRAIGHT = 0.3, 0.25, 5e-3

@@ -8,7 +8,7 @@ does not depend on s: it is the derivative of the fold itself.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -137,12 +137,3 @@ def orbit_derivatives(
 def excess_derivatives(orbit: PeriodicOrbit, changes: Sequence[Change]) -> Array:
     """d(F/F_g - 1)/dp at given approach speed, shape (P,); at a fold, the derivative of the fold itself."""
     return orbit_derivatives(orbit, changes, at_speed=True).excess
-
-
-def with_speed(orbit: PeriodicOrbit, changes: Sequence[Change]) -> OrbitDerivatives:
-    """Derivatives at given approach speed, and last with respect to the approach speed itself [s/m]."""
-    require_kind("orbit", orbit, PeriodicOrbit, "a PeriodicOrbit")
-    given = Sensitivities(oscillator=orbit.oscillator, changes=changes)
-    several = replace(given, changes=(*given.changes, Change()))
-    start = np.delete(_solved(orbit, several, at_speed=True), -2, axis=1)
-    return OrbitDerivatives(orbit=orbit, changes=several, start=start)

@@ -23,6 +23,7 @@ from beam.parameters import Array
 from contact.errors import ContactError
 from contact.flight.crossing import CROSSES, FREE, first_crossing
 from contact.flight.modal_flow import steady_motion, tip_state
+from contact.flight.tip_search import peaks_of_flight, tip_at
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.trajectory import ImpactKind, State
@@ -247,3 +248,19 @@ class PeriodicOrbit(TouchOrbit):
         off = 4.0 * self.residual * self.oscillator.stop.gap / self.record[0, 2]
         slack = SLACK * self.oscillator.period + off
         return Release(float(last[1]), last[4 : 4 + n], last[4 + n :], bool(last[3] < 0.0), slack)
+
+
+def peaks(orbit: PeriodicOrbit) -> list[tuple[int, float, float]]:
+    """All peaks of the flights of an orbit, the wall ignored; none is missed.
+
+    Each is given by the number of the touch before it, the time since its end [s], and the height over the
+    stop [m].
+    """
+    motion, n = orbit.oscillator.motion(), orbit.oscillator.n_modes
+    found = list[tuple[int, float, float]]()
+    ends = np.append(orbit.record[1:, 0], orbit.duration)
+    for i, (row, end) in enumerate(zip(orbit.record, ends, strict=True)):
+        base, u, v = float(orbit.phase + row[1]), row[4 : 4 + n].copy(), row[4 + n :].copy()
+        times = peaks_of_flight(motion, base, u, v, (0.0, end - row[1]), False).tolist()
+        found += [(i, s, float(tip_at(motion, base, u, v, s)[0])) for s in times]
+    return found
