@@ -141,18 +141,18 @@ def draw_orbit(drawn: Drawn) -> Figure:
         ("fold ", fold, 2.0, "0.3", "right"),
         (" grazing", grazing, 2.0, "0.3", "left"),
         ("hysteresis", middle, 2.0, PURPLE, "center"),
-        ("raised", middle, -0.7, BLUE, "center"),
-        ("lowered", middle, 0.95, VERMILION, "center"),
+        ("drive raised", middle, -0.7, BLUE, "center"),
+        ("drive lowered", middle, 0.95, VERMILION, "center"),
         ("p1", raised[3], -0.7, "black", "center"),
         ("p4: one impact\nin four drive periods", raised[-1], 0.2, "black", "right"),
     ):
         axes.text(x, y, words, color=colour, ha=side, va="center")
-    axes.set(xlabel="amplitude of the base (mm)", ylabel="displacement at each strobe (mm)", ylim=(-3.8, 2.3))
+    axes.set(xlabel="drive amplitude F (mm)", ylabel="displacement at each strobe (mm)", ylim=(-3.8, 2.3))
     return figure
 
 
 def draw_costs(drawn: Drawn) -> Figure:
-    """Each method from its cost at an error of 1e-4 to its cost at 1e-8; exact flights are a point or star."""
+    """Each method from its cost at an error of 1e-4 to its cost at 1e-8; exact flights as one point."""
     figure = Figure(figsize=(7.5, 4.5))
     axes = figure.add_axes((0.13, 0.135, 0.85, 0.845))
     ordered = sorted(drawn.items(), key=lambda item: item[1]["microseconds_at_1e-8"])
@@ -168,13 +168,24 @@ def draw_costs(drawn: Drawn) -> Figure:
             continue
         place = lines.index(name)
         axes.loglog([start, end], [1e-4, 1e-8], "o-", color=PALETTE[place], linewidth=2.0, markersize=5.0)
-        line = {"arrowstyle": "-", "color": PALETTE[place], "relpos": (1.0, 0.5), "shrinkA": 0.0}
+        line = {
+            "arrowstyle": "-",
+            "linestyle": ":",
+            "color": PALETTE[place],
+            "relpos": (1.0, 0.5),
+            "shrinkA": 0.0,
+        }
         below = end, 1e-8 * 10.0 ** (-1.0 - 1.1 * place)  # the further right, the lower: no line meets a word
         look = {"ha": "right", "va": "center", "arrowprops": line, "color": PALETTE[place]}
         axes.annotate(f"{name}{missed} ", (end, 1e-8), below, **look)
-    words = "missed: share of shallow touches at an error of 10$^{-8}$; none elsewhere"
+    words = "missed: share of shallow touches, at the lower end of a line; else none"
     axes.text(0.99, 0.02, words, transform=axes.transAxes, ha="right", color="0.4", fontsize=11.0)
-    axes.set(xlabel="time per drive period", ylabel="error", xlim=(1e-6, 0.5), ylim=(3e-18, 1e-3))
+    axes.set(
+        xlabel="time to compute a drive period",
+        ylabel="error after the first collision",
+        xlim=(1e-6, 0.5),
+        ylim=(3e-18, 1e-3),
+    )
     axes.xaxis.set_major_formatter(EngFormatter(unit="s"))
     axes.minorticks_off()
     return figure
