@@ -2,11 +2,23 @@
 
     y(t) = offset + scale x(t),   base motion Z sin(2 pi f t + phase),
 
-t the time of the record.  The motion begins at the first row, at modal displacements and velocities that are
-fitted too; a mode that hardly appears in the record is held by a prior, one per cent of the gap at the tip.
-With the drive later by a time s and the same start the tip is at x(t; s), and
+t the time of the record.  A settled motion repeats after m drive periods P = m/f.  Its rows are folded onto
+one orbit: a row at t belongs to the time
 
-    dx/ds = x'(t) - Phi(t) (q', q'')  at the start,
+    s = s_0 + (t + phase/(2 pi f) - s_0) mod P
+
+on the clock of the drive.  With Phi and D the derivatives of the state at s_0 + P with respect to that at s_0
+and to the parameters, Newton's method closes the orbit, and the state at s_0 follows the parameters by
+
+    dq_0 = (1 - Phi)^-1 D dp.
+
+No error grows from orbit to orbit, and an unstable orbit is fitted as well as a stable one.
+
+A motion that does not repeat begins at its first row, in a state that is fitted; a mode that hardly appears
+in the record is held by a prior, one per cent of the gap at the tip.  With the drive later by a time u and the
+same start the tip is at x(t; u), and
+
+    dx/du = x'(t) - Phi(t) (q', q'')  at the start,
 
 Phi the derivative with respect to the start (``contact.orbits.motion_derivatives``).
 """
@@ -21,35 +33,40 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from beam import InvalidValue, Refusal
-from contact import ContactError, ImpactKind, ImpactOscillator, State, Trajectory, simulate
-from contact.orbits import MotionDerivatives, motion_derivatives
+from beam import InvalidValue
+from contact import ImpactKind, ImpactOscillator, State, Trajectory, simulate
+from contact.orbits import motion_derivatives
 from studies.measurement.identify.predictions import Prediction
 from studies.measurement.identify.records import Record
 from studies.physics.parameters import changes_of
 
 Array = NDArray[np.float64]
 
-CLOSE, END = 0.01, 0.002
-"""Residuals over the size of the record that are close; part of a record at whose end impacts do not
-count."""
-
 PRIOR = 0.01
 """Standard deviation of a mode beyond the first at the start of a record, in gaps at the tip."""
+
+CLOSED, STEPS = 1e-10, 12
+"""Last step of Newton's method on an orbit, in gaps at the tip, and the most steps; four are usual."""
+
+FAR = 1.0
+"""A step of Newton's method that leads nowhere, in gaps at the tip."""
+
+FEW = 1500
+"""Rows with which a search begins."""
 
 SENSOR: Mapping[str, float] = {"phase": 0.0, "offset": 0.0, "scale": 1.0}
 """The numbers of a sensor, each with its value where it is not fitted: the phase of the drive at time zero
 [rad], the reading at equilibrium [m], the reading per displacement [1]."""
 
-
 UNITS = {"phase": "rad", "offset": "m", "scale": "1"}
 
 
 class Displacement(Prediction):
-    """The reading at the times of the record, from modal displacements and velocities at its row `begin`.
+    """The reading at the times of the record, from the modal displacements and velocities `start`.
 
-    `sensor` has all numbers of the sensor; those named in `free` are fitted.  The `first` rows are one orbit
-    and a half.
+    A motion with a `period` m has this start at the time `clock` of the drive [s]; one that does not repeat
+    (0) has it at the first row.  `sensor` has all numbers of the sensor; those named in `free` are fitted.
+    The `first` rows of a motion that does not repeat are fitted first.
     """
 
     def __init__(
@@ -59,105 +76,127 @@ class Displacement(Prediction):
         start: Array,
         sensor: Mapping[str, float],
         free: Sequence[str],
-        begin: int = 0,
+        *,
+        period: int = 0,
+        clock: float = 0.0,
         first: int = 0,
     ) -> None:
         model, gap = oscillator.model, oscillator.stop.gap
-        self.record = replace(record, rows=record.rows[begin:])
-        self.times, self.first = self.record.rows[:, 0], first
+        self.record, self.times = record, record.rows[:, 0]
+        self.period, self.clock, self.first = period, clock, first
         tip = gap / np.abs(model.phi)
+        self.scale = np.append(tip, tip * model.omega)
+        self.orbit = [np.ravel(start)]  # the last state that was accepted, one for all parts
         sizes = {"phase": 1.0, "offset": gap, "scale": 1.0}
+        own = np.empty(0) if period else self.scale
+        others = np.tile(np.arange(model.n_modes) != model.leading_mode, 2)[: own.size]
         self.sensor, self.fixed = tuple(free), dict(sensor)
-        self.sizes = np.concatenate([tip, tip * model.omega, [sizes[name] for name in free]])
-        leading = np.tile(np.arange(model.n_modes) == model.leading_mode, 2)
-        states = 2 * model.n_modes
-        held = np.where(leading, np.inf, PRIOR * self.sizes[:states])
-        self.prior = np.append(held, np.full(len(free), np.inf))
-        self.extra = np.concatenate([np.ravel(start), [sensor[name] for name in free]])
+        self.sizes = np.append(own, [sizes[name] for name in free])
+        self.prior = np.append(np.where(others, PRIOR * own, np.inf), np.full(len(free), np.inf))
+        self.extra = np.append(self.orbit[0][: own.size], [sensor[name] for name in free])
+        self._last: tuple[ImpactOscillator, Array, Trajectory, NDArray[np.int64]] | None = None
 
-    def parts(self, oscillator: ImpactOscillator) -> Sequence[Prediction]:
-        """Itself if it starts close to the record, else first its beginning, twice as long each time."""
-        if self.first == 0 or self.off(oscillator) < CLOSE:
-            return [self]
-        most = 0.75 * len(self.times)
-        counts = [self.first * 2**k for k in range(64) if self.first * 2**k < most]
-        return [*(self.upto(count) for count in counts), self]
+    def parts(self) -> Sequence[Prediction]:
+        """Few rows of an orbit, then all; of other motions more and more rows from the first on."""
+        rows = len(self.times)
+        if self.period:
+            return [self.part(slice(None, None, -(-rows // FEW))), self]
+        counts = [self.first * 2**k for k in range(64) if 0 < self.first * 2**k < 0.75 * rows]
+        return [*(self.part(slice(count)) for count in counts), self]
 
-    def off(self, oscillator: ImpactOscillator) -> float:
-        """Residuals at the start over the size of the record."""
-        seen = self.record.observed
-        try:
-            return float((self.values(oscillator, self.extra) - seen).std() / seen.std())
-        except (ContactError, Refusal):
-            return math.inf
-
-    def upto(self, count: int) -> Displacement:
-        """The prediction of the first rows."""
-        part = copy.copy(self)
-        part.record = replace(self.record, rows=self.record.rows[:count])
-        part.times = self.times[:count]
-        return part
+    def part(self, rows: slice) -> Displacement:
+        """The prediction of some rows."""
+        found = copy.copy(self)
+        found.record = replace(self.record, rows=self.record.rows[rows])
+        found.times, found._last = found.record.rows[:, 0], None
+        return found
 
     def reading(self, extra: Array) -> dict[str, float]:
         """The numbers of the sensor."""
         states = extra.size - len(self.sensor)
         return self.fixed | dict(zip(self.sensor, extra[states:].tolist(), strict=True))
 
-    def _placed(self, oscillator: ImpactOscillator, extra: Array) -> tuple[State, Array, int]:
-        """The start and the times of the rows on the clock of the drive, and how many periods they last."""
-        w = oscillator.driven.angular_frequency
-        begun = ((self.reading(extra)["phase"] + w * self.times[0]) % (2.0 * math.pi)) / w
+    def _placed(self, oscillator: ImpactOscillator, extra: Array) -> tuple[State, Array, float]:
+        """The start, the times of the rows and the end of the motion, on the clock of the drive."""
+        w, phase = oscillator.driven.angular_frequency, self.reading(extra)["phase"]
+        if self.period:
+            begun, lasting = self.clock, self.period * oscillator.period
+            times = begun + (self.times + phase / w - begun) % lasting
+            return self._closed(oscillator), times, begun + lasting
+        begun = ((phase + w * self.times[0]) % (2.0 * math.pi)) / w
         q, v = extra[: 2 * oscillator.n_modes].reshape(2, -1)
-        lasting = self.times - self.times[0]
-        periods = math.ceil((begun + lasting[-1]) / oscillator.period + 1e-9)
-        return State(displacement=q, velocity=v, time=begun), begun + lasting, periods
+        times = begun + self.times - self.times[0]
+        return State(displacement=q, velocity=v, time=begun), times, float(times[-1])
 
-    def run(self, oscillator: ImpactOscillator, extra: Array) -> Trajectory:
-        """The motion; InvalidValue if it rests on the stop."""
-        state, times, periods = self._placed(oscillator, extra)
-        run = simulate(oscillator, state, periods=periods, times=times)
-        if np.any(run.impacts.kind != ImpactKind.IMPACT):
-            raise InvalidValue("the motion grazes the stop or comes to rest on it")
-        return run
+    def _closed(self, oscillator: ImpactOscillator) -> State:
+        """The state at the clock on the orbit next to the last one; InvalidValue if none is found."""
+        n, begun, state = oscillator.n_modes, self.clock, self.orbit[0]
+        end = begun + self.period * oscillator.period
+        for _ in range(STEPS):
+            at = State(displacement=state[:n], velocity=state[n:], time=begun)
+            found = motion_derivatives(oscillator, at, periods=_periods(end, oscillator), times=np.array([end]))
+            off = np.append(found.run.displacement[0], found.run.velocity[0]) - state
+            step = np.linalg.solve(np.eye(2 * n) - found.states[0], off)
+            if not np.abs(step / self.scale).max() < FAR:
+                break
+            state = state + step
+            if np.abs(step / self.scale).max() < CLOSED:
+                return State(displacement=state[:n], velocity=state[n:], time=begun)
+        raise InvalidValue(f"no orbit of {self.period} drive periods was found with these parameters")
+
+    def run(self, oscillator: ImpactOscillator, extra: Array) -> tuple[Trajectory, NDArray[np.int64]]:
+        """The motion, and the place of each row and of the end in it; InvalidValue if it rests on the stop."""
+        if self._last is None or self._last[0] is not oscillator or self._last[1] is not extra:
+            state, rows, end = self._placed(oscillator, extra)
+            times, place = np.unique(np.append(rows, end), return_inverse=True)
+            run = simulate(oscillator, state, periods=_periods(end, oscillator), times=times)
+            if np.any(run.impacts.kind != ImpactKind.IMPACT):
+                raise InvalidValue("the motion grazes the stop or comes to rest on it")
+            self._last = oscillator, extra, run, place
+        return self._last[2:]
 
     def values(self, oscillator: ImpactOscillator, extra: Array) -> Array:
         """The readings."""
-        sensor = self.reading(extra)
-        x = oscillator.tip(self.run(oscillator, extra).displacement)
-        return (sensor["offset"] + sensor["scale"] * x)[:, None]
-
-    def touches(self, oscillator: ImpactOscillator, extra: Array) -> int:
-        """Impacts in the record up to the last rows, among which one more may come and go."""
-        _, times, _ = self._placed(oscillator, extra)
-        end = times[-1] - END * (times[-1] - times[0])
-        return int(np.sum(self.run(oscillator, extra).impacts.start <= end))
+        (run, place), sensor = self.run(oscillator, extra), self.reading(extra)
+        return (sensor["offset"] + sensor["scale"] * oscillator.tip(run.displacement)[place[:-1]])[:, None]
 
     def jacobian(self, oscillator: ImpactOscillator, extra: Array, names: Sequence[str]) -> Array:
         """Derivatives of `values`."""
-        state, times, periods = self._placed(oscillator, extra)
-        n, w = oscillator.n_modes, oscillator.driven.angular_frequency
-        found = motion_derivatives(
-            oscillator, state, changes_of(oscillator, names), periods=periods, times=times
-        )
-        tip = np.tensordot(found.states[:, :n], oscillator.model.phi, (1, 0))
+        state, rows, end = self._placed(oscillator, extra)
+        n, w, f = oscillator.n_modes, oscillator.driven.angular_frequency, oscillator.driven.frequency
+        times, place = np.unique(np.append(rows, end), return_inverse=True)
+        changes, periods = changes_of(oscillator, names), _periods(end, oscillator)
+        found = motion_derivatives(oscillator, state, changes, periods=periods, times=times)
+        tip = np.tensordot(found.states[:, :n], oscillator.model.phi, (1, 0))[place[:-1]]
         tips, own = tip[:, : 2 * n], tip[:, 2 * n :]
-        later = self._later(oscillator, state, found, tips)
-        if "frequency" in names:  # at the same phase the drive is then later by this much
-            delay = (self.times[0] - state.time) / oscillator.driven.frequency
-            own[:, list(names).index("frequency")] += delay * later
-        scale = self.reading(extra)["scale"]
-        x = oscillator.tip(found.run.displacement)
+        run, scale = found.run, self.reading(extra)["scale"]
+        x, later = (oscillator.tip(one)[place[:-1]] for one in (run.displacement, run.velocity))
+        moved = [name == "frequency" for name in names]
+        rate = _rate(oscillator, state)
+        if self.period:
+            self.orbit[0] = np.append(state.displacement, state.velocity)
+            own = own + np.outer((self.times - rows) / f * later, moved)
+            last = found.states[place[-1]]
+            ends = last[:, 2 * n :] - np.outer(rate * self.period * oscillator.period / f, moved)
+            own, tips = own + tips @ np.linalg.solve(np.eye(2 * n) - last[:, : 2 * n], ends), tips[:, :0]
+        else:
+            later = later - tips @ rate
+            own = own + np.outer((self.times[0] - state.time) / f * later, moved)
         columns = {"phase": later / w * scale, "offset": np.ones(x.size), "scale": x}
         more = np.array([columns[name] for name in self.sensor]).reshape(-1, x.size).T
         return np.hstack([scale * own, scale * tips, more])
 
-    def _later(
-        self, oscillator: ImpactOscillator, state: State, found: MotionDerivatives, tips: Array
-    ) -> Array:
-        """dx/ds of the rows."""
-        model, drive = oscillator.model, oscillator.driven
-        w = drive.angular_frequency
-        base = -drive.amplitude * w * w * math.sin(w * state.time)
-        pull = -model.participation * base + (0.0 if oscillator.load is None else oscillator.load)
-        rate = pull - model.decay_rate * state.velocity - model.omega**2 * state.displacement
-        return oscillator.tip(found.run.velocity) - tips @ np.append(state.velocity, rate)
+
+def _periods(end: float, oscillator: ImpactOscillator) -> int:
+    """Whole drive periods up to a time."""
+    return math.ceil(end / oscillator.period + 1e-9)
+
+
+def _rate(oscillator: ImpactOscillator, state: State) -> Array:
+    """Modal velocities and accelerations off the stop."""
+    model, drive = oscillator.model, oscillator.driven
+    w = drive.angular_frequency
+    base = -drive.amplitude * w * w * math.sin(w * state.time)
+    pull = -model.participation * base + (0.0 if oscillator.load is None else oscillator.load)
+    rate = pull - model.decay_rate * state.velocity - model.omega**2 * state.displacement
+    return np.append(state.velocity, rate)

@@ -11,6 +11,7 @@ the autocorrelation of its residuals (Ljung and Box, Biometrika 65 (1978) 297).
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -46,6 +47,12 @@ LAGS = 10
 
 LEASH = 1.0
 """Prior of the parameters while the beginning of a record is fitted, which need not determine all of them."""
+
+EARLY, FINISHED, SAME = 40, 3, 1e-4
+"""Steps from each start; starts that are fitted to the end; relative difference of chi^2 of two that are one."""
+
+SETTLED = 0.1
+"""Fall of chi^2 that may be left to a further step, in units of the noise's variance: a third of an error."""
 
 PART, LOST = 0.3, 2.0
 """Part of the largest from which a parameter takes part in a direction that is not determined; standard error
@@ -104,10 +111,11 @@ class Fit:
 
         They are those of the unknowns of the problem, of a restitution r those of log(r/(1 - r)).
         """
-        problem, own = self.problem, self.problem.named
-        ends = np.tile(self.unknowns, (2, 1))
-        ends[:, own] += np.outer([-self.reach, self.reach], self.errors / problem.slopes(self.unknowns)[own])
-        found = problem.values(ends)[:, own].T
+        log = self.problem.log[self.problem.named]
+        wide = self.reach * self.errors
+        found = self.estimate[:, None] + np.outer(wide, [-1.0, 1.0])
+        factor = np.exp(wide[log] / self.estimate[log])
+        found[log] = self.estimate[log, None] * np.column_stack([1.0 / factor, factor])
         for i, name in enumerate(self.names):
             if name == "restitution" and 0.0 < (r := self.estimate[i]) < 1.0:
                 wide = self.reach * self.errors[i] / (r * (1.0 - r))
@@ -132,54 +140,69 @@ def fit(
     require_names(names, oscillator)
     known = noise is not None or len(record.columns) == 4
     unit = noise or (letter.AMPLITUDE_STABILITY if record.kind == "transitions" else READ_OUT)
-    best, failure = None, None
-    for prediction, begun in predictions_of(record, oscillator, tuple(names), free):
-        problem = Problem(prediction, begun, tuple(names), unit)
+    starts = predictions_of(record, oscillator, tuple(names), free)
+    problem, found = _best([Problem(one, begun, tuple(names), unit) for one, begun in starts], known)
+    return _judged(problem, found, oscillator, known)
+
+
+def _best(problems: Sequence[Problem], known: bool) -> tuple[Problem, Any]:
+    """The problem that is solved best, and its solution: all are begun, the best that differ are finished."""
+    rows = problems[0].observed.size
+    if rows < problems[0].unknowns + (not known):
+        raise InvalidValue(
+            f"the record has {rows} numbers, too short for {problems[0].unknowns} unknowns and their errors"
+        )
+    failure, begun = None, list[tuple[float, int, Array]]()
+    for i, problem in enumerate(problems):
+        first = _part(problem, 0)
         try:
-            found = _solved(problem, known)
+            found = first.solve(problem.start, EARLY)
+            begun.append((found.cost, i, found.x))
         except (ContactError, Refusal) as error:
             failure = failure or error
+    ends, last = list[tuple[Problem, Any]](), -math.inf
+    for cost, i, unknowns in sorted(begun, key=lambda one: one[:2]):
+        if len(ends) == FINISHED or cost < last * (1.0 + SAME):
             continue
-        if best is None or found.cost < best[1].cost:
-            best = problem, found
-        if _chance(found.fun[: problem.observed.size], prediction, known, problem.freedom) > TOO_SMALL:
-            break
-    if best is None:
+        problem, last = problems[i], cost
+        try:
+            for k in range(1, len(problem.prediction.parts()) - 1):
+                unknowns = _part(problem, k).solve(unknowns).x
+            ends.append((problem, problem.solve(unknowns)))
+        except (ContactError, Refusal) as error:
+            failure = failure or error
+    if not ends:
         raise failure or InvalidValue("no motion like that of the record was found to start from")
-    return _judged(*best, oscillator, known)
+    return min(ends, key=lambda end: float(end[1].cost))
 
 
-def _solved(problem: Problem, known: bool) -> Any:
-    """The least squares of a problem, its beginning first."""
-    rows, names = problem.observed.size, problem.names
-    if rows < problem.unknowns + (not known):
-        raise InvalidValue(
-            f"the record has {rows} numbers, too short for {problem.unknowns} unknowns and their errors"
-        )
-    start = problem.start
-    for part in problem.prediction.parts(problem.oscillator)[:-1]:
-        start = Problem(part, problem.oscillator, names, problem.noise, LEASH).solve(start).x
-    found = problem.solve(start)
-    if found.status == 0:
-        raise InvalidValue(f"the fit has not settled after {MOST} steps: give better values, or fit fewer")
-    return found
+def _part(problem: Problem, number: int) -> Problem:
+    """The problem of a part of its prediction."""
+    parts = problem.prediction.parts()
+    if len(parts) == 1:
+        return problem
+    return Problem(parts[number], problem.oscillator, problem.names, problem.noise, LEASH)
 
 
 def _judged(problem: Problem, found: Any, oscillator: ImpactOscillator, known: bool) -> Fit:
     """The fit that a solution is; InvalidValue if the record does not determine it."""
     prediction, rows = problem.prediction, problem.observed.size
     spread = 1.0 if known else float(np.sqrt(2.0 * found.cost / problem.freedom))
-    own = problem.named
     names = problem.names + prediction.sensor
+    own = problem.named
     lengths = np.linalg.norm(found.jac, axis=0)
     lengths[lengths == 0.0] = 1.0
-    _u, singular, axes = np.linalg.svd(found.jac / lengths, full_matrices=False)
+    left, singular, axes = np.linalg.svd(found.jac / lengths, full_matrices=False)
+    gain = float(np.sum((left.T @ found.fun) ** 2)) / spread**2
+    if gain > SETTLED:
+        raise InvalidValue(f"the fit has not settled after {MOST} steps: chi^2 would still fall by {gain:.2g}")
+    slopes, values = problem.slopes(found.x), problem.values(found.x)
+    sizes = np.where(problem.log, LOST * np.abs(values), np.maximum(np.abs(values), problem.sizes))
+    axes = axes / lengths @ slopes.T
     if not singular[-1] > SINGULAR * singular[0]:
-        blind = _blind(axes[:, own], names)
+        blind = _blind((axes / sizes)[:, own], names)
         raise InvalidValue(f"the record cannot {blind}: fit fewer parameters or another record")
-    axes = axes / lengths
     covariance = (axes.T / singular**2 @ axes * spread**2)[np.ix_(own, own)]
-    slopes = problem.slopes(found.x)[own]
     before = parameters_of(oscillator)
     result = Fit(
         record=prediction.record,
@@ -187,8 +210,8 @@ def _judged(problem: Problem, found: Any, oscillator: ImpactOscillator, known: b
         names=names,
         start=problem.values(problem.start)[own],
         before=np.array([before[name].value if name in before else SENSOR[name] for name in names]),
-        estimate=problem.values(found.x)[own],
-        covariance=covariance * np.outer(slopes, slopes),
+        estimate=values[own],
+        covariance=covariance,
         noise=spread * problem.noise,
         noise_known=known,
         freedom=problem.freedom,
@@ -197,10 +220,9 @@ def _judged(problem: Problem, found: Any, oscillator: ImpactOscillator, known: b
         problem=problem,
         unknowns=found.x,
     )
-    most = np.where(problem.log, LOST, np.maximum(np.abs(found.x), 1.0))[own]
-    share = np.sqrt(np.diag(covariance)) / most
+    share = result.errors / sizes[own]
     if not result.too_small and np.any(share > 1.0):  # else `report` says so
-        worst, blind = names[int(np.argmax(share))], _blind(axes[:, own], names)
+        worst, blind = names[int(np.argmax(share))], _blind((axes / sizes)[:, own], names)
         blind = blind if worst in blind.split() else f"determine {worst}"
         raise InvalidValue(f"the record cannot {blind}: the standard error of {worst} is above its value")
     return result

@@ -38,6 +38,9 @@ FREE_PERIODS, DECAY_RATES = np.geomspace(0.6, 1.4, 16), np.array([0.03, 0.1, 0.3
 STARTS, WORTH, APART = 5, 12.0, 0.04
 """First kicks that are followed; what a further kick must take off chi^2; drive periods between two kicks."""
 
+VALLEY, LIKE = 50.0, 4
+"""By how much chi^2 of another free period may be above the best; how many others are kept."""
+
 SAME, NEAR = 1.3, 3e-3
 """An orbit leaves at most so much of the least scatter; part by which a given drive frequency may be off."""
 
@@ -90,7 +93,13 @@ class Kicked:
         sign, at = -float(np.sign(self.impulses[strongest])), float(self.kicks[strongest])
         (x, v_in), (_, v_out) = self.tip(at, True), self.tip(at)
         back = -v_out / v_in if v_in * sign > 0.0 else 0.0
-        return {"sign": sign, "gap": sign * x, "restitution": min(max(back, 0.01), 0.99)}
+        return {"sign": sign, "gap": sign * x, "restitution": back}
+
+    @property
+    def possible(self) -> bool:
+        """Whether a stop can do this: the strongest kick at a peak above equilibrium, and not from behind."""
+        read = self.reading()
+        return read["gap"] > 0.0 and 0.0 < read["restitution"] < 1.0 and self.steady != 0.0
 
 
 def poles(oscillator: ImpactOscillator) -> Complex:
@@ -232,8 +241,10 @@ class Search:
                 kept.append(one)
         return [((log_t, log_c), np.array([at])) for _, log_t, log_c, at in kept[:STARTS]]
 
-    def refined(self, logs: Sequence[float], kicks: Array) -> tuple[Sequence[float], Array, float]:
-        """Both logarithms and the times of kicks by least squares, and chi^2."""
+    def refined(
+        self, logs: Sequence[float], kicks: Array, held: bool = False
+    ) -> tuple[Sequence[float], Array, float]:
+        """Both logarithms and the times of kicks by least squares, and chi^2; the first may be held."""
 
         def off(unknowns: Array) -> Array:
             rest = self.left(self.response(unknowns[:2].tolist()), unknowns[2:])
@@ -242,6 +253,8 @@ class Search:
         beat = self.oscillator.period
         middle = np.log([beat, 0.1 / beat])
         low, high = middle + np.log([0.3, 1e-3]), middle + np.log([3.0, 60.0])
+        if held:
+            low[0], high[0] = logs[0] - 2e-6, logs[0] + 2e-6
         bounds = [np.append(end, np.full(kicks.size, way)) for end, way in ((low, -np.inf), (high, np.inf))]
         begun = np.append(np.clip(logs, low + 1e-6, high - 1e-6), kicks)
         scale = np.append([0.05, 0.5], np.full(kicks.size, 0.02 * beat))
@@ -267,9 +280,24 @@ class Search:
             kicks = np.append(kicks, times[int(np.argmax(gains))])
         return best
 
-    def best(self) -> Kicked:
-        """The kicked motion that is most like the record."""
-        cost, logs, kicks = min((self.along(*one) for one in self.first()), key=lambda one: one[0])
+    def found(self) -> list[Kicked]:
+        """The kicked motions that are most like the record, the best first, each with another free period.
+
+        With one impact a drive period all free periods near it give nearly the same motion.
+        """
+        best = min((self.along(*one) for one in self.first()), key=lambda one: one[0])
+        ends, beat = [best], self.oscillator.period
+        if best[2].size == 1:
+            for period in FREE_PERIODS * beat:
+                logs, kicks, cost = self.refined((math.log(period), best[1][1]), best[2], held=True)
+                ends.append((cost + WORTH, logs, kicks))
+        motions = [self.motion(*end) for end in ends]
+        able = min((one.cost for one in motions if one.possible), default=math.inf)
+        others = [one for one in motions[1:] if one.possible and one.cost < able + VALLEY]
+        return [motions[0], *sorted(others, key=lambda one: one.cost)[:LIKE]]
+
+    def motion(self, cost: float, logs: Sequence[float], kicks: Array) -> Kicked:
+        """The kicked motion of a search."""
         waves, (period, rate) = self.waves(self.response(logs), kicks), np.exp(logs).tolist()
         impulses = self.impulses(waves)
         rest = self.seen - waves @ impulses
@@ -296,5 +324,5 @@ def kicked_motions(
     found = list[Kicked]()
     for frequency, period in drives(times, values, given):
         at = with_values(oscillator, {"frequency": frequency})
-        found.append(Search(times, values, at, period).best())
+        found += Search(times, values, at, period).found()
     return sorted(found, key=lambda one: one.cost)

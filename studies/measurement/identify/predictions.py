@@ -35,8 +35,8 @@ class Prediction(ABC):
     """What is predicted of one record; `extra` are the unknowns beside the parameters.
 
     `sizes` measure changes of them, `prior` holds each about zero with this standard deviation (infinite:
-    not), all of shape (n_extra,). The last of them are the `sensor` numbers that are estimated, by name. Rows
-    repeat after `period`, unless it is 0.
+    not), all of shape (n_extra,).  The last of them are the `sensor` numbers that are estimated, by name.
+    Rows repeat after `period`, unless it is 0.
     """
 
     record: Record
@@ -46,18 +46,13 @@ class Prediction(ABC):
     prior: Array = np.empty(0)
     sensor: tuple[str, ...] = ()
 
-    def parts(self, oscillator: ImpactOscillator) -> Sequence[Prediction]:
+    def parts(self) -> Sequence[Prediction]:
         """What is fitted one after the other, itself last."""
         return [self]
 
     @abstractmethod
     def values(self, oscillator: ImpactOscillator, extra: Array) -> Array:
         """The predicted rows, shape of `record.observed`; ContactError or Refusal where there are none."""
-
-    def touches(self, oscillator: ImpactOscillator, extra: Array) -> int:
-        """Number of impacts in what is predicted, of an orbit 1; errors as of `values`."""
-        self.values(oscillator, extra)
-        return 1
 
     @abstractmethod
     def jacobian(self, oscillator: ImpactOscillator, extra: Array, names: Sequence[str]) -> Array:

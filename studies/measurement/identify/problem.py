@@ -16,16 +16,25 @@ from studies.physics.parameters import parameters_of, with_values
 
 Array = NDArray[np.float64]
 
-MOST = 200
+MOST = 100
 """Steps of a fit: a dozen are usual, a hundred along a valley of two parameters that trade off."""
+
+GAIN = 1e-3
+"""A fit ends where a step lowers chi^2 by less than this times the noise's variance: 0.03 standard errors."""
+
+
+RESPONSE, STEP = ("free_period", "decay_rate", "frequency"), 1e-6
+"""The parameters that the response of the tip hangs on; a part of each, for differences of it."""
 
 
 class Problem:
     """Residuals and Jacobian in units of the noise, by unknowns u without units.
 
     A parameter p that starts at p_0 > 0 has u = log(p/p_0), and no search leaves the physical range; another
-    one, and a restitution, has u = p/size.  The further unknowns are held by their prior, the parameters by a
-    `leash`: a standard deviation of u about where it starts.
+    one, and a restitution, has u = p/size.  Where amplitude Z and phase of the drive are both fitted, theirs
+    are those of the steady motion Y = Z exp(i phase) R of the tip, R its response to the base: near a
+    resonance the record determines Y, and hardly Z.  The further unknowns are held by their prior, the
+    parameters by a `leash`: a standard deviation of u about where it starts.
     """
 
     def __init__(
@@ -43,6 +52,8 @@ class Problem:
         self.log = (np.arange(values.size) < len(names)) & (values > 0.0)
         self.log[[i for i, name in enumerate(names) if name == "restitution"]] = False
         self.sizes[self.log] = values[self.log]
+        self.steady, self.response = self._steady(), 1.0 + 0j
+        self.response = self._response(values)
         self.start = self.unknowns_of(values)
         self.weights = 1.0 / prediction.record.units(noise).ravel()
         self.observed = prediction.record.observed.ravel()
@@ -55,23 +66,54 @@ class Problem:
         self.named = [*range(len(names)), *sensor]
         self.last: tuple[Array, ImpactOscillator, Array] | None = None
 
+    def _steady(self) -> tuple[int, int] | None:
+        """Where amplitude and phase stand among the unknowns, if both are fitted."""
+        sensor = self.prediction.sensor
+        if "amplitude" not in self.names or "phase" not in sensor:
+            return None
+        return self.names.index("amplitude"), self.sizes.size - len(sensor) + sensor.index("phase")
+
+    def _response(self, values: Array) -> complex:
+        """The response of the tip over that at the start."""
+        if self.steady is None:
+            return 1.0 + 0j
+        own = {name: float(values[self.names.index(name)]) for name in RESPONSE if name in self.names}
+        return with_values(self.oscillator, own).tip_response() / self.response
+
     def values(self, unknowns: Array) -> Array:
         """Parameters and further unknowns in their units."""
         found = unknowns * self.sizes
-        found[..., self.log] = self.sizes[self.log] * np.exp(np.clip(unknowns[..., self.log], -50.0, 50.0))
+        found[self.log] = self.sizes[self.log] * np.exp(np.clip(unknowns[self.log], -50.0, 50.0))
+        if self.steady is not None:
+            response = self._response(found)
+            found[self.steady[0]] /= abs(response)
+            found[self.steady[1]] -= np.angle(response)
         return np.asarray(found)
 
     def unknowns_of(self, values: Array) -> Array:
         """The inverse of `values`."""
-        found = values / self.sizes
+        found = values.copy()
+        if self.steady is not None:
+            response = self._response(found)
+            found[self.steady[0]] *= abs(response)
+            found[self.steady[1]] += np.angle(response)
+        found = found / self.sizes
         found[self.log] = np.log(found[self.log])
         return np.asarray(found)
 
     def slopes(self, unknowns: Array) -> Array:
-        """Derivatives of `values`, each by its own unknown."""
+        """Derivatives of `values` by the unknowns, shape (n, n)."""
         found, slopes = self.values(unknowns), self.sizes.copy()
         slopes[self.log] = found[self.log]
-        return slopes
+        matrix = np.diag(slopes)
+        if self.steady is not None:
+            amplitude, phase = self.steady
+            for i in [self.names.index(name) for name in RESPONSE if name in self.names]:
+                step = STEP * np.eye(found.size)[i] * found
+                change = np.log(self._response(found + step) / self._response(found - step)) / (2.0 * step[i])
+                matrix[amplitude, i] -= found[amplitude] * change.real * slopes[i]
+                matrix[phase, i] -= change.imag * slopes[i]
+        return matrix
 
     def at(self, unknowns: Array) -> tuple[ImpactOscillator, Array]:
         """Oscillator and further unknowns; for the same unknowns the same objects."""
@@ -82,35 +124,33 @@ class Problem:
         return self.last[1], self.last[2]
 
     def residuals(self, unknowns: Array) -> Array:
-        """Residuals of rows and priors, shape (rows + unknowns,); not a number where there is no orbit, which
-        rejects the step."""
+        """Residuals of rows and priors; not a number where there is no motion, which rejects the step."""
         try:
-            oscillator, extra = self.at(unknowns)
-            predicted = self.prediction.values(oscillator, extra).ravel()
+            predicted = self.prediction.values(*self.at(unknowns)).ravel()
         except (ContactError, Refusal):
             return np.full(self.observed.size + self.held.size, np.nan)
         off = (predicted - self.observed) * self.weights
         return np.concatenate([off, (unknowns - self.middle) * self.held])
 
     def jacobian(self, unknowns: Array) -> Array:
-        """Shape (rows + unknowns, unknowns)."""
+        """Shape (rows + unknowns, unknowns); InvalidValue if it is not finite."""
         rows = self.prediction.jacobian(*self.at(unknowns), self.names) * self.weights[:, None]
-        return np.vstack([rows * self.slopes(unknowns), np.diag(self.held)])
+        if not np.all(np.isfinite(rows)):
+            raise InvalidValue("the motion hangs too sensitively on where it begins")
+        return np.vstack([rows @ self.slopes(unknowns), np.diag(self.held)])
 
-    def solve(self, start: Array) -> Any:
+    def solve(self, start: Array, most: int = MOST) -> Any:
         """``scipy.optimize.least_squares`` from `start`."""
         if not np.all(np.isfinite(self.residuals(start))):
-            raise InvalidValue(
-                "no motion like the record's was found to start from: fit more, or give better values"
-            )
+            raise InvalidValue("no motion like the record's was found to start from")
         with np.errstate(all="ignore"):  # of the trust region, along what is not seen
             return least_squares(
                 self.residuals,
                 start,
                 jac=self.jacobian,
                 x_scale="jac",
-                max_nfev=MOST,
+                max_nfev=most,
                 xtol=1e-10,
-                ftol=1e-12,
-                gtol=1e-12,
+                ftol=GAIN / self.freedom,
+                gtol=None,
             )

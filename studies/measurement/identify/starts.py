@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
 from beam import InvalidValue, Refusal
-from contact import ContactError, ImpactOscillator, SingleImpactOrbit
+from contact import ContactError, ImpactOscillator, SingleImpactOrbit, State, simulate
 from studies.measurement.identify.displacement import SENSOR, Displacement
 from studies.measurement.identify.kicks import Kicked, kicked_motions
 from studies.measurement.identify.predictions import Prediction, Strobes, Transitions, family_of
@@ -40,8 +40,9 @@ FLAT = 1e-3
 CLOSE = 0.01
 """A start whose residuals are below this part of the record's own size needs no search."""
 
-SIMILAR, TRIED = 0.1, 3
-"""The same at which a search has failed; starts that are searched from."""
+SIMILAR, TRIED, WORSE = 0.1, 6, 30.0
+"""The same at which a search has failed; starts that are searched from; least chi^2 of a kicked motion over
+that of the best at which it is left out."""
 
 SPEEDS = np.geomspace(0.01, 0.5, 12)
 """Approach speeds that a search begins with, in units of 2 pi f gap."""
@@ -49,8 +50,14 @@ SPEEDS = np.geomspace(0.01, 0.5, 12)
 SEEN = 40.0
 """By how much kicks must lower chi^2 of the harmonics: noise alone gives 25 once in a thousand records."""
 
-BELOW, FACTORS = 0.98, (1.0, 0.3, 3.0, 0.1, 10.0)
-"""Part of the gap below which a record may begin; values of what a kick does not tell, over the given one."""
+FACTORS = (0.1, 10.0, 0.3, 3.0, 0.03, 30.0)
+"""Values of what a kick does not tell of a contact, over the given one."""
+
+RESTITUTIONS = (0.1, 0.3, 0.6, 0.9)
+"""Restitutions that are tried beside those of the record and the scene."""
+
+LOOKED = 200
+"""Times of an orbit at which the tip may be farthest from the stop, where its state begins."""
 
 
 def predictions_of(
@@ -143,7 +150,7 @@ def _searched(
     begun = np.array([known[name].value for name in own]) / sizes
     starts = [np.append(begun, math.log(part)) for part in SPEEDS]
     costs = np.array([np.sum(off(start) ** 2) for start in starts])
-    best = [starts[i] for i in np.argsort(costs)[:TRIED] if np.isfinite(costs[i])]
+    best = [starts[i] for i in np.argsort(costs)[:3] if np.isfinite(costs[i])]
     if not best:
         raise InvalidValue(
             f"the scene has no p{period} with one impact at {oscillator.driven.frequency:g} Hz"
@@ -164,33 +171,69 @@ def _displacement(
     likely = [one for one in motions if one.reading()["gap"] > 0.0 and one.steady != 0.0]
     if not likely:
         raise InvalidValue("the record repeats, but not as a motion with impacts at one gap")
-    starts = [one for motion in likely[:TRIED] for one in _starts(record, motion, oscillator, names, free)]
-    near = sorted(starts, key=lambda one: one[0].upto(one[0].first).off(one[1]))
-    return near[:TRIED]
+    likely = [one for one in likely if one.cost < WORSE * likely[0].cost + SEEN][:TRIED]
+    return [
+        one
+        for i, motion in enumerate(likely)
+        for one in _starts(record, motion, oscillator, names, free, few=i > 0)
+    ]
 
 
 def _starts(
-    record: Record, motion: Kicked, oscillator: ImpactOscillator, names: Sequence[str], free: Sequence[str]
+    record: Record,
+    motion: Kicked,
+    oscillator: ImpactOscillator,
+    names: Sequence[str],
+    free: Sequence[str],
+    few: bool,
 ) -> list[tuple[Displacement, ImpactOscillator]]:
-    """Starts at a kicked motion, with several values of what it does not tell of the contact."""
-    at, times, read = motion.oscillator, record.rows[:, 0], motion.reading()
-    sign = read["sign"]
+    """Starts at a kicked motion, with several values of what it does not show of the contact, or `few`; and at
+    the given values."""
+    at, read = motion.oscillator, motion.reading()
+    sign, read["restitution"] = read["sign"], min(max(read["restitution"], 0.01), 0.99)
     drive = 2j * motion.steady * sign / at.tip_response()
+    phase = float(np.angle(drive))
     told = {name: one.value for name, one in parameters_of(at).items()} | read | {"amplitude": abs(drive)}
     known = parameters_of(oscillator)
     soft = [name for name in ("stiffness", "delay") if name in names]
-    begun = with_values(oscillator, {n: told[n] for n in names if n in told and n in known and n not in soft})
-    sensor = dict(SENSOR) | {"offset": motion.offset, "phase": float(np.angle(drive)), "scale": sign}
+    sensor = dict(SENSOR) | {"offset": motion.offset, "phase": phase, "scale": sign}
     sensor = {name: sensor[name] if name in free or name == "scale" else SENSOR[name] for name in sensor}
-    lasting = min(motion.period * at.period, times[-1] - times[0])
-    early = np.flatnonzero(times - times[0] < lasting)
-    heights = np.array([sign * motion.tip(float(t))[0] for t in times[early]])
-    begin = int(np.argmax(heights < BELOW * read["gap"]))
-    start = sign * np.add(*motion.state(float(times[begin])))
-    first = int(np.searchsorted(times - times[begin], 1.5 * lasting))
+    lasting = motion.period * at.period
+    clock = np.linspace(0.0, lasting, LOOKED, endpoint=False)
+    away = sensor["phase"] / at.driven.angular_frequency
+    heights = [sign * motion.tip(t - away)[0] for t in clock]
+    lowest = float(clock[int(np.argmin(heights))])
+    start = sign * np.add(*motion.state(lowest - away))
     law = {name: known[name].value for name in ("restitution", *soft) if name in names}
-    others = [law, *({soft[0]: law[soft[0]] * factor} for factor in FACTORS)] if soft else [{}, law]
+    begun = with_values(oscillator, {n: told[n] for n in names if n in told and n in known and n not in soft})
+    others: list[dict[str, float]] = [{}, law]
+    if soft:
+        others = [law, *({soft[0]: law[soft[0]] * factor} for factor in FACTORS[: 2 if few else None])]
+    elif few:
+        others = [{}]
+    elif "restitution" in law:
+        others += [{"restitution": part} for part in RESTITUTIONS]
+    at = [with_values(begun, other) for other in others]
+    held = with_values(oscillator, {"frequency": begun.driven.frequency})
     return [
-        (Displacement(record, one, start, sensor, free, begin, first), one)
-        for one in (with_values(begun, other) for other in others)
+        (Displacement(record, one, start, sensor, free, period=motion.period, clock=lowest), one)
+        for one in [*(_behind(one, start, lowest, lasting) for one in at), *([] if few else [held])]
     ]
+
+
+def _behind(oscillator: ImpactOscillator, start: Array, clock: float, lasting: float) -> ImpactOscillator:
+    """The oscillator with the gap at which a kick in the middle of a contact is this contact.
+
+    A kicked tip goes on at its approach velocity v until the middle of a contact of duration d: to v d/2 beyond
+    the stop.
+    """
+    state = State(displacement=start[0], velocity=start[1], time=clock)
+    try:
+        impacts = simulate(oscillator, state, duration=lasting).impacts
+        if not len(impacts):
+            return oscillator
+        first = int(np.argmax(impacts.approach))
+        beyond = 0.5 * float(impacts.approach[first] * (impacts.end[first] - impacts.start[first]))
+        return with_values(oscillator, {"gap": oscillator.stop.gap - beyond})
+    except (ContactError, Refusal):
+        return oscillator
