@@ -13,9 +13,9 @@ example makes one of each):
 The oscillator is that of the scene: Eq. (1) (one_mode), the same with a constant delay (two_parameters), or
 the spring on its stop (beam).  Least squares have exact derivatives; errors and intervals come from
 (J^T J)^-1 and the scatter of the residuals.  Where two parameters trade off (correlation beyond 0.95) the
-likelihood along one of them is computed, with the others fitted again.  Residuals unlike noise show that
-the model is too small.  Without a record three synthetic ones, with 0.5 um of read-out noise, are made and
-fitted.
+likelihood along one of them is computed, with the others fitted again.  A fit whose residuals are unlike
+noise is no answer: it ends with exit code 3 and its best values, without a table.  Without a record three
+synthetic ones, with 0.5 um of read-out noise, are made and fitted.
 
 --fit takes these names, or the symbol in brackets:
 
@@ -25,7 +25,7 @@ fitted.
     frequency           Hz           frequency f of the drive
     amplitude           m            amplitude Z of the base
     restitution (tau)   1            speed after an impact over the speed before (one_mode, two_parameters)
-    delay               s            duration of an impact (two_parameters)
+    delay               s            time from contact to release (two_parameters)
     stiffness           N/m^1.5      of Hertz's contact; N/m of a linear one (beam)
     damping             N s/m        of a linear contact (beam)
     dissipation         s/m          of Hunt and Crossley's contact (beam)
