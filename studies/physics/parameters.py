@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from typing import Any, Literal
@@ -34,6 +34,9 @@ Description = Literal["one_mode", "two_parameters", "beam"]
 LEAST = {"delay": 1e-3, "restitution": 0.01, "decay_rate": 0.01}
 """What counts as a change of a parameter that may be zero, times drive periods or per drive period if it has
 a unit."""
+
+ALIASES = {"T": "free_period", "mu": "decay_rate", "tau": "restitution"}
+"""Symbols of the letter that name parameters on the command line."""
 
 OF_LAWS = ("restitution", "delay", "stiffness", "damping", "dissipation")
 
@@ -85,15 +88,22 @@ def changes_of(oscillator: ImpactOscillator, names: Sequence[str]) -> list[Chang
     return [found[name] for name in names]
 
 
-def require_names(names: Sequence[str], oscillator: ImpactOscillator, option: str = "fit") -> None:
-    """ValueError unless each is the name of a parameter of this oscillator, given once."""
-    known, law = parameters_of(oscillator), type(oscillator.stop.law).__name__
+def in_full(names: Sequence[str]) -> tuple[str, ...]:
+    """The names with each symbol of `ALIASES` replaced."""
+    return tuple(ALIASES.get(name, name) for name in names)
+
+
+def require_names(
+    names: Sequence[str], oscillator: ImpactOscillator, option: str = "fit", more: Iterable[str] = ()
+) -> None:
+    """ValueError unless each names a parameter of this oscillator, or is one of `more`, given once."""
+    known, law = [*parameters_of(oscillator), *more], type(oscillator.stop.law).__name__
     for name in names:
         if name not in known and name in OF_LAWS:
             others = ", ".join(known)
             raise InvalidValue(f"{option} names {name}, which {law} does not have; there are {others}")
         if name not in known:
-            nearest = get_close_matches(name[:60], [*known, *OF_LAWS], n=1, cutoff=0.0)[0]
+            nearest = get_close_matches(name[:60], [*known, *OF_LAWS, *ALIASES], n=1, cutoff=0.0)[0]
             raise InvalidValue(f"{option} names {name[:60]!r}, no parameter; the nearest is {nearest}")
     if len(set(names)) < len(names) or not names:
         raise InvalidValue(f"{option} names {', '.join(names) or 'nothing'}; it must name each one once")

@@ -293,4 +293,6 @@ def _cell(value: object) -> str:
         return "-"
     if isinstance(value, float | np.floating):
         return f"{value:.5g}"
+    if isinstance(value, tuple):
+        return " ".join(map(_cell, value))
     return {True: "yes", False: "no"}[value] if isinstance(value, bool) else str(value)

@@ -13,23 +13,37 @@ example makes one of each):
 The oscillator is that of the scene: Eq. (1) (one_mode), the same with a constant delay (two_parameters), or
 the spring on its stop (beam).  Least squares have exact derivatives; errors and intervals come from
 (J^T J)^-1 and the scatter of the residuals.  Where two parameters trade off (correlation beyond 0.95) the
-likelihood along one of them is computed, with the others fitted again.  Residuals unlike noise show that
-the model is too small.  Without a record three synthetic ones, with 0.5 um of read-out noise, are made and
-fitted.  --coverage N fits N records of each kind and counts how often 90 % intervals hold the true value.
+likelihood along one of them is computed, with the others fitted again.  A fit whose residuals are unlike
+noise is no answer: it ends with exit code 3 and its best values, without a table.  Without a record three
+synthetic ones, with 0.5 um of read-out noise, are made and fitted.
+
+--fit takes these names, or the symbol in brackets:
+
+    free_period (T)     s            damped free period of mode 1
+    decay_rate (mu)     1/s          decay rate of mode 1: amplitudes fall as exp(-mu t/2)
+    gap                 m            distance from the tip at rest to the stop
+    frequency           Hz           frequency f of the drive
+    amplitude           m            amplitude Z of the base
+    restitution (tau)   1            speed after an impact over the speed before (one_mode, two_parameters)
+    delay               s            time from contact to release (two_parameters)
+    stiffness           N/m^1.5      of Hertz's contact; N/m of a linear one (beam)
+    damping             N s/m        of a linear contact (beam)
+    dissipation         s/m          of Hunt and Crossley's contact (beam)
+    phase               rad          phase of the base at time zero; it and the next two need a displacement
+    offset              m            reading of the sensor at equilibrium
+    scale               1            reading per displacement
+
+The base moves as Z sin(2 pi f t + phase).  The time t is that of the record's stamps.
 
 --next NAMES finds the next measurement: the drive frequency and excess at which the strobes of one orbit
-determine these parameters best,
+determine these parameters best (studies.measurement.identify.next_measurement).  The oscillator is Eq. (1)
+with the restitution and the constant delay of the fit.  A place counts if the orbit outlives its errors.
 
-    M = (N/m) sum_j J_j^T J_j/s^2 + (information before),      J_j = dy_j/dp, exact derivatives.
-
-The oscillator there is Eq. (1) with the restitution and the constant delay of the fit, or of the scene in the
-example.  A place counts if the orbit outlives its errors.
-
-Run:     python -m studies identify [RECORD.csv --fit free_period restitution gap] [--next NAMES]
-Writes:  parameters.csv with correlations, quality.csv, profile.csv, residuals.npz, identify.png (record
+Run:     python -m studies identify [RECORD.csv --fit T tau gap phase] [--next NAMES]
+Writes:  parameters.csv and correlations.csv, quality.csv, profile.csv, residuals.npz, identify.png (record
          and fit, residuals, profile), fitted.toml, a scene that every study takes; the example also its
          three records; --next and the example measurements.csv (a row an orbit), next.csv (the best five),
-         letter_orbits.csv, next.png; --coverage coverage.csv
+         letter_orbits.csv, next.png
 """
 
 from __future__ import annotations
@@ -38,16 +52,15 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 
 from beam import InvalidValue, Refusal
 from contact import ImpactOscillator
-from studies.measurement.identify import coverage as covering
 from studies.measurement.identify import figure
 from studies.measurement.identify.displacement import SENSOR
-from studies.measurement.identify.estimates import SHOWN, Estimate, Quality, estimates_of, traded
+from studies.measurement.identify.estimates import estimates_of, report
 from studies.measurement.identify.fit import Fit
 from studies.measurement.identify.fit import fit as fitted
 from studies.measurement.identify.next_measurement import (
@@ -62,9 +75,15 @@ from studies.measurement.identify.next_measurement import (
     letter_rows,
     measurements_at,
 )
-from studies.measurement.identify.profiles import Profile
-from studies.measurement.identify.records import Kind, Record, read_record, synthetic
-from studies.physics.parameters import Description, described, fitted_scene, parameters_of, require_names
+from studies.measurement.identify.records import Kind, NoAnswer, Record, read_record, synthetic
+from studies.physics.parameters import (
+    Description,
+    described,
+    fitted_scene,
+    in_full,
+    parameters_of,
+    require_names,
+)
 from studies.shell.options import POSITIONAL, Within
 from studies.shell.scene import Scene, corresponding, harmonic, periods_of
 from studies.shell.study import Run, study
@@ -85,7 +104,7 @@ EXAMPLES: Mapping[Kind, Description] = {
     "transitions": "one_mode",
 }
 FREQUENCY_HZ, SEED = 22.20, 1996  # of the example: the letter's p5
-BEST = ("frequency_hz", "excess", "period", "together")
+BEST = ("frequency_hz", "excess", "period", "errors", "together")
 
 
 def frequency_of(record: Record, scene: Scene) -> float:
@@ -128,26 +147,24 @@ def identify(
     run: Run,
     *,
     record: Annotated[Path | None, "CSV file; without one, the example", POSITIONAL] = None,
-    fit: Annotated[tuple[str, ...], "parameters to fit (default: by the kind of record)"] = (),
+    fit: Annotated[
+        tuple[str, ...],
+        "names to fit, see above; if none is a parameter, the usual ones of this kind of record are fitted; "
+        "if none is phase, offset or scale, phase and offset of a displacement are",
+    ] = (),
     description: Annotated[Description, "the oscillator"] = "one_mode",
     drive: Annotated[
         tuple[float, float] | None,
         "frequency (Hz) and amplitude of the base (mm), in place of the record's",
         Within(0, 1e6, "Hz, mm", open=True),
     ] = None,
-    sensor: Annotated[
-        tuple[str, ...],
-        "numbers of the sensor that are fitted to a displacement: phase (of the drive at time zero), offset "
-        "(reading at equilibrium), scale (reading per displacement)",
-    ] = ("phase", "offset"),
     noise_um: Annotated[
         float | None, "noise of the read-out, where it is known", Within(0, 1e9, "µm", open=True)
     ] = None,
     delay_ms: Annotated[
         float | None, "two_parameters: delay, or start of its fit (default: T/136)", Within(0, 1e9, "ms")
     ] = None,
-    coverage: Annotated[int | None, "also fit so many synthetic records of each kind: true errors?"] = None,
-    next: Annotated[tuple[str, ...], "parameters of the next measurement (example: T, tau, delay)"] = (),
+    next: Annotated[tuple[str, ...], "parameters of the next measurement (example: T tau delay)"] = (),
 ) -> Mapping[str, object]:
     """Read or make, fit, report and draw."""
     harmonic(scene)
@@ -155,33 +172,46 @@ def identify(
         raise InvalidValue(f"drive is {drive[0]:g} Hz, {drive[1]:g} mm; it needs a record")
     if delay_ms is not None and description != "two_parameters" and record is not None:
         raise InvalidValue(f"delay_ms is {delay_ms:g} ms; only --description two_parameters has a delay")
-    if unknown := [name for name in sensor if name not in SENSOR]:
-        raise InvalidValue(f"sensor names {unknown[0]}; a sensor has {', '.join(SENSOR)}")
     noise = None if noise_um is None else 1e-6 * noise_um
     delay = None if delay_ms is None else 1e-3 * delay_ms
+    if wanted := in_full(next) or (() if record else Plan().names):
+        there = described(scene, "two_parameters", delay, corresponding(scene, FREQUENCY_HZ))
+        require_names(wanted, there, "next")
+    if "amplitude" in wanted:
+        raise InvalidValue("next names amplitude, which is measured with each orbit; name another parameter")
     if description == "beam":
         scene = run.choose_modes(scene, {"fold": 0.05})
     if record is not None:
         read = read_record(record)
         if drive is not None:
             read = replace(read, frequency=drive[0], amplitude=1e-3 * drive[1])
+        if read.origin:
+            run.say(f"the stamps begin at {read.origin:.15g} s: 0 is the first row")
         oscillator = described(scene, description, delay, frequency_of(read, scene))
         given = {record.stem: (read, oscillator)}
+        if fit:
+            require_names(in_full(fit), oscillator, more=SENSOR)
+            if read.kind != "displacement" and (lost := [name for name in fit if name in SENSOR]):
+                raise InvalidValue(f"fit names {lost[0]}, which only a record of displacement has")
     elif fit:
         raise InvalidValue(f"fit names {' '.join(fit)}, but no record is given: put its file before --fit")
     else:
         given = examples(scene, run, delay)
     found = dict[str, Fit]()
+    named = tuple(name for name in in_full(fit) if name not in SENSOR)
+    free = tuple(name for name in fit if name in SENSOR) or ("phase", "offset")
     for name, (rows_of, oscillator) in given.items():
-        names, at = fit or usual(rows_of, oscillator), driven(rows_of, oscillator, fit)
+        names, at = named or usual(rows_of, oscillator), driven(rows_of, oscillator, named)
         try:
-            found[name] = fitted(rows_of, at, names, noise=noise, free=sensor)
-        except Refusal as error:
+            found[name] = answered(fitted(rows_of, at, names, noise=noise, free=free))
+        except (NoAnswer, Refusal) as error:
             if record is not None:
                 raise
             run.failed(name, error)  # the study made this record: no wrong use
     if not found:
         return {"rows": []}
+    first, *_ = found
+    fit_scene = as_scene(scene, found[first])  # before the report: it refuses values that no scene has
     results = report(run, found)
     for name, one in found.items():
         if one.record.kind == "displacement" and (rows := in_step(one.record, one.oscillator)):
@@ -189,17 +219,13 @@ def identify(
                 f"{name}: {rows} rows a drive period, so that all impacts lie alike between two of them: "
                 "errors of gap, restitution and delay are too small; record at another rate"
             )
-    first, *_ = found
-    fit_scene = as_scene(scene, found[first])
-    about = [f"# {row.parameter} {row.short} {row.unit}" for row in results["rows"] if row.record == first]
+    about = [f"# {row.parameter} {row.value}" for row in results["rows"] if row.record == first]
     run.text("fitted.toml", "\n".join([*about, "", fit_scene.dump()]))
-    if wanted := next or (() if record else Plan().names):
-        there = scene if record is None else fit_scene
+    if wanted:
+        known = scene if record is None else fit_scene
         if record is not None and description == "two_parameters":
             delay = parameters_of(found[first].oscillator)["delay"].value
-        results["next"] = where_to_measure(there, run, wanted, delay, noise or Plan().noise)
-    if coverage is not None:
-        results |= truth(scene, run, coverage)
+        results["next"] = where_to_measure(known, run, wanted, delay, noise or Plan().noise)
     return results
 
 
@@ -213,34 +239,17 @@ def examples(scene: Scene, run: Run, delay: float | None) -> dict[str, tuple[Rec
     return found
 
 
-def truth(scene: Scene, run: Run, records: int) -> dict[str, object]:
-    """The share of intervals that hold the true value."""
-    beam = run.choose_modes(scene, {"fold": 0.05})
-    rows = covering.coverage(scene, beam, run, records=records, beam_records=records // 4)
-    run.table("coverage", rows, covering.COVERED, of=covering.Coverage)
-    return {"coverage": rows}
+def reason(one: Fit) -> str:
+    """Why the residuals of a fit are unlike noise."""
+    return "the model is too small for the record"
 
 
-def report(run: Run, found: Mapping[str, Fit]) -> dict[str, Any]:
-    """Tables and figure of the fits."""
-    profiles = {name: traded(one, run.quick) for name, one in found.items()}
-    estimates = [row for name, one in found.items() for row in estimates_of(name, one, profiles[name])]
-    run.table("parameters", estimates, "Standard errors and 90 % intervals.", of=Estimate, show=SHOWN)
-    quality = [
-        Quality(name, len(one.residuals), one.noise, one.freedom, one.chance, one.too_small)
-        for name, one in found.items()
-    ]
-    run.table("quality", quality, "The residuals of the fits.", of=Quality)
-    for row in (row for row in quality if row.too_small):
-        run.say(
-            f"{row.record}: residuals are no noise (p {row.chance:.0e}), errors mean little: the model "
-            "is too small, or the start was too far off"
-        )
-    points = [row for rows in profiles.values() for row in rows]
-    run.table("profile", points, "Likelihood where two parameters trade off.", of=Profile, show=())
-    run.arrays("residuals", **{f"residuals_{name}": one.residuals for name, one in found.items()})
-    run.figure("identify", figure.draw(found, profiles), figure.CAPTION)
-    return {"rows": estimates, "quality": quality}
+def answered(one: Fit) -> Fit:
+    """The fit; NoAnswer with the best values if its residuals are unlike noise."""
+    if not one.too_small:
+        return one
+    best = ", ".join(f"{row.parameter} {row.value}" for row in estimates_of("", one, ()))
+    raise NoAnswer(f"{reason(one)}; the best values found are {best}, with errors that mean little")
 
 
 def as_scene(scene: Scene, found: Fit) -> Scene:
@@ -258,9 +267,6 @@ def where_to_measure(
     The oscillator is Eq. (1) with a constant restitution and `delay` [s].
     """
     of = partial(described, scene, "two_parameters", delay)
-    require_names(wanted, of(corresponding(scene, FREQUENCY_HZ)), "next")
-    if "amplitude" in wanted:
-        raise InvalidValue("next names amplitude, which is measured with each orbit; name another parameter")
     before = {name: error for name, error in Plan().before.items() if name not in wanted}
     plan, thin = Plan(names=tuple(wanted), noise=noise, before=before), THIN[run.quick]
     frequencies = [corresponding(scene, f) for f in FREQUENCIES_HZ[::thin]]
@@ -269,7 +275,7 @@ def where_to_measure(
     chosen = best(found)
     caption = f"Standard errors of {', '.join(wanted)} by one orbit."
     run.table("measurements", found, caption, of=Measurement, show=())
-    run.table("next", chosen, "The five best.", of=Measurement, show=BEST)
+    run.table("next", chosen, f"The five best places. {caption}", of=Measurement, show=BEST)
     if found:
         run.figure("next", figure.draw_plane(found, plan), figure.PLANE)
     if run.letters:

@@ -2,31 +2,40 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import combinations
+from typing import Any
 
 import numpy as np
 
+from studies.measurement.identify import figure
 from studies.measurement.identify.displacement import UNITS
 from studies.measurement.identify.fit import Fit
 from studies.measurement.identify.profiles import Profile, profile
 from studies.physics.parameters import parameters_of
+from studies.shell.run import Run
 
 TRADE = 0.95
 """Correlation from which on two parameters trade off."""
 
-SHOWN = ("record", "parameter", "unit", "start", "short", "low90", "high90", "scene")
+NOTABLE, MOST = 0.5, 10
+"""Size of the correlations that are shown, and how many of a fit."""
+
+SHOWN = ("record", "parameter", "value", "interval", "began", "in_scene")
 """Columns of the estimates on the terminal."""
 
+PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "\u00b5"}
+"""Power of ten -> prefix of a unit."""
 
-@dataclass(frozen=True, kw_only=True)
+
+@dataclass(frozen=True)
 class Estimate:
-    """One parameter of a fit.
+    """One parameter of a fit, in SI units.
 
-    The 90 % interval is that of the profile likelihood where there is one.  ``short`` is the estimate with
-    its error, 40.80(2); ``scene`` is the value of the scene; ``correlations`` are with each parameter in
-    turn.
+    The 90 % interval is that of the profile likelihood where there is one.  ``scene`` is the value of the
+    scene; ``correlations`` are with each parameter in turn.  The properties are for a person: they round to
+    the second digit of the error, in a unit with a prefix.
     """
 
     record: str
@@ -38,8 +47,42 @@ class Estimate:
     low90: float
     high90: float
     scene: float
-    short: str
     correlations: tuple[float, ...]
+
+    @property
+    def value(self) -> str:
+        """The estimate with its error and unit: 40.798(11) ms, 12.3(4.5) mm, 773(46) kN/m."""
+        scale, digits, unit = self._style
+        last = f"{self.standard_error / scale * 10.0**digits:.0f}"
+        last = last if digits > 1 else self._written(self.standard_error)
+        return f"{self._written(self.estimate)}({last}) {unit}".removesuffix(" 1")
+
+    interval = property(lambda self: f"{self._written(self.low90)} to {self._written(self.high90)}")
+    began = property(lambda self: self._written(self.start))
+    in_scene = property(lambda self: self._written(self.scene))
+
+    @property
+    def _style(self) -> tuple[float, int, str]:
+        """Scale of the unit, digits after the point and the unit."""
+        size = max(abs(self.estimate), self.standard_error)
+        powers = (9, 6, 3, 0) if self.unit[0] == "N" else (0, -3, -6) if self.unit in ("s", "m") else (0,)
+        power = next((power for power in powers if size >= 10.0**power), powers[-1])
+        first = f"{self.standard_error / 10.0**power:.1e}".partition("e")[2]
+        return 10.0**power, 1 - int(first or 0), PREFIXES[power] + self.unit
+
+    def _written(self, number: float) -> str:
+        scale, digits, _ = self._style
+        return f"{round(number / scale, digits):z.{max(digits, 0)}f}"
+
+
+@dataclass(frozen=True)
+class Correlation:
+    """The correlation of two estimates of a fit."""
+
+    record: str
+    parameter: str
+    other: str
+    correlation: float
 
 
 @dataclass(frozen=True)
@@ -47,7 +90,7 @@ class Quality:
     """The residuals of a fit.
 
     ``noise`` is that of x [m], or of an excess [1]; ``chance`` is the probability of such residuals from
-    noise alone.  The model is too small if it is below 0.001.
+    noise alone.
     """
 
     record: str
@@ -55,7 +98,6 @@ class Quality:
     noise: float
     freedom: int
     chance: float
-    too_small: bool
 
 
 def estimates_of(name: str, found: Fit, profiles: Sequence[Profile]) -> list[Estimate]:
@@ -68,30 +110,21 @@ def estimates_of(name: str, found: Fit, profiles: Sequence[Profile]) -> list[Est
         middle = found.estimate[found.names.index(one)]
         roots, reach = np.copysign(depth**0.5, values - middle), found.reach
         intervals[one] = np.interp([-reach, reach], roots, values)
-    return [
-        Estimate(
-            record=name,
-            parameter=one,
-            unit=units[one],
-            start=float(found.start[i]),
-            low90=float(low),
-            estimate=float(found.estimate[i]),
-            standard_error=float(found.errors[i]),
-            high90=float(high),
-            short=in_short(float(found.estimate[i]), float(found.errors[i])),
-            scene=float(found.before[i]),
-            correlations=tuple(found.correlations[i].tolist()),
-        )
-        for i, (one, (low, high)) in enumerate(intervals.items())
+    ends = np.array([intervals[one] for one in found.names])
+    numbers = np.vstack([found.start, found.estimate, found.errors, ends.T, found.before]).tolist()
+    words, correlations = (found.names, [units[one] for one in found.names]), found.correlations.tolist()
+    rows = zip(*words, *numbers, map(tuple, correlations), strict=True)
+    return [Estimate(name, *row) for row in rows]
+
+
+def correlated(name: str, found: Fit) -> list[Correlation]:
+    """The pairs of a fit whose correlation is largest in size, the largest first."""
+    pairs = [
+        Correlation(name, found.names[i], found.names[k], float(found.correlations[i, k]))
+        for i, k in combinations(range(len(found.names)), 2)
+        if abs(found.correlations[i, k]) > NOTABLE
     ]
-
-
-def in_short(value: float, error: float) -> str:
-    """The value with its error in units of its last digits, 0.04080(2)."""
-    if not 0.0 < error < math.inf:
-        return f"{value:.6g}"
-    digits = 1 - math.floor(math.log10(error))
-    return f"{value:.{max(digits, 0)}f}({round(error * 10.0 ** max(digits, 0))})"
+    return sorted(pairs, key=lambda pair: -abs(pair.correlation))[:MOST]
 
 
 def traded(found: Fit, quick: bool) -> list[Profile]:
@@ -109,3 +142,22 @@ def traded(found: Fit, quick: bool) -> list[Profile]:
         for i in kept[: 1 if quick else None]
         for row in profile(found, found.names[i], found.names[partners[i]], points=5 if quick else 9)
     ]
+
+
+def report(run: Run, found: Mapping[str, Fit]) -> dict[str, Any]:
+    """Tables and figure of the fits."""
+    profiles = {name: traded(one, run.quick) for name, one in found.items()}
+    estimates = [row for name, one in found.items() for row in estimates_of(name, one, profiles[name])]
+    caption = "Values with standard errors, 90 % intervals, where the fit began, and the scene's values."
+    run.table("parameters", estimates, caption, of=Estimate, show=SHOWN)
+    pairs = [pair for name, one in found.items() for pair in correlated(name, one)]
+    run.table("correlations", pairs, "The largest correlations, above 0.5 in size.", of=Correlation)
+    quality = [
+        Quality(name, len(one.residuals), one.noise, one.freedom, one.chance) for name, one in found.items()
+    ]
+    run.table("quality", quality, "The residuals of the fits.", of=Quality)
+    points = [row for rows in profiles.values() for row in rows]
+    run.table("profile", points, "Likelihood where two parameters trade off.", of=Profile, show=())
+    run.arrays("residuals", **{f"residuals_{name}": one.residuals for name, one in found.items()})
+    run.figure("identify", figure.draw(found, profiles), figure.CAPTION)
+    return {"rows": estimates, "quality": quality}

@@ -5,10 +5,10 @@
     frequency_hz,period,excess[,error]     a table: where p_m is lost as the drive is lowered, F/F_g - 1
 
 x is the displacement of the tip relative to the base, and the base moves as Z sin(2 pi f t). Strobe points
-begin at a strobe, a displacement at any time. Lines that begin with # are skipped, but the first two kinds
-take their drive from `# frequency_hz = 22.2` and `# amplitude_m = 0.002`. The noise is that of the read-out,
-independent from row to row: of x one sigma [m], of v 2 pi f sigma; of an excess the error in the table or the
-letter's amplitude stability.
+begin at a strobe, a displacement at any time; stamps that begin far from zero count from the first row. Lines
+that begin with # are skipped, but the first two kinds take their drive from `# frequency_hz = 22.2` and
+`# amplitude_m = 0.002`. The noise is that of the read-out, independent from row to row: of x one sigma [m],
+of v 2 pi f sigma; of an excess the error in the table or the letter's amplitude stability.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beam import InvalidValue
-from contact import ImpactOscillator, StroboscopicMap, simulate
+from contact import ContactError, ImpactOscillator, StroboscopicMap, simulate
 from contact.orbits import Shooting, born
 from studies import letter
 
@@ -44,18 +44,32 @@ NOTES = ("frequency_hz", "amplitude_m")
 FEWEST = {"strobe": 4, "displacement": 40, "transitions": 1}
 """Rows that each kind needs: strobes, rows, transitions."""
 
+LARGEST, LATEST, FAR = 1e6, 1e15, 100.0
+"""Largest size of a number, in the unit of its column, and of a time [s]; first stamp over the span of the
+record above which times begin at the first row."""
+
+
+class NoAnswer(ContactError):
+    """A record that cannot answer, with what was found in it."""
+
+    def __init__(self, sentence: str) -> None:
+        self.time = self.gap = self.velocity = math.nan
+        RuntimeError.__init__(self, sentence)
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Record:
     """A record: its `columns`, `rows` of shape (n_rows, n_columns), and the drive where it is known.
 
-    `frequency` [Hz] and `amplitude` [m] are None where the record has no such line.
+    `frequency` [Hz] and `amplitude` [m] are None where the record has no such line; `origin` [s] is what was
+    subtracted from its times.
     """
 
     columns: tuple[str, ...]
     rows: Array
     frequency: float | None = None
     amplitude: float | None = None
+    origin: float = 0.0
 
     @property
     def kind(self) -> Kind:
@@ -116,10 +130,17 @@ def read_record(path: Path) -> Record:
     for i, row in enumerate(cells, 1):
         if len(row) != len(heading):
             raise InvalidValue(f"row {i} of {path} has {len(row)} cells, the heading {len(heading)}")
-    numbers = [[_number(cell, f"row {i}", path) for cell in row] for i, row in enumerate(cells, 1)]
+    numbers = [
+        _number(cell, f"{name} in row {i}", path)
+        for i, row in enumerate(cells, 1)
+        for name, cell in zip(heading, row, strict=True)
+    ]
     rows = np.array(numbers, dtype=float).reshape(-1, len(heading))
     record = Record(columns=heading, rows=rows, frequency=notes.get(NOTES[0]), amplitude=notes.get(NOTES[1]))
     _check(record, path)
+    first, last = rows[[0, -1], 0]
+    if record.kind == "displacement" and abs(first) > FAR * (last - first):
+        record = replace(record, rows=rows - [first, 0.0], origin=float(first))
     return record
 
 
@@ -128,8 +149,9 @@ def _number(text: str, place: str, path: Path) -> float:
         number = float(text)
     except ValueError:
         number = math.nan
-    if not math.isfinite(number):
-        raise InvalidValue(f"{place} of {path} has {text.strip()[:40]!r}, which is not a finite number")
+    if not abs(number) <= (most := LATEST if place.startswith("time_s") else LARGEST):
+        valid = f"it must be a number of at most {most:g} in size"
+        raise InvalidValue(f"{place} of {path} is {text.strip()[:40]!r}; {valid}")
     return number
 
 
@@ -143,6 +165,8 @@ def _check(record: Record, path: Path) -> None:
         if falling.size:
             row = int(falling[0]) + 2
             raise InvalidValue(f"time_s of {path} is {rows[row - 1, 0]:g} s in row {row}; times must rise")
+        if np.all(rows[:, 1] == rows[0, 1]):
+            raise NoAnswer(f"the displacement in {path} is {rows[0, 1]:g} m in all rows; a record must move")
     if record.kind == "transitions":
         wrong = (rows[:, 0] <= 0.0) | (rows[:, 1] % 1 != 0) | (rows[:, 1] < 1) | (rows[:, 2] <= -1.0)
         wrong |= np.any(rows[:, 3:] <= 0.0, axis=1)
