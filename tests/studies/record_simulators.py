@@ -111,8 +111,6 @@ class Piece:
         summit = (v[:-1] > 0) & (v[1:] <= 0) & (y[:-1] + 2 * v[:-1] * self.grid[1] > 0)
         for j in np.flatnonzero((y[1:] > 0) | summit):
             low, high = self.grid[j], self.grid[j + 1]
-            if start + low >= last:  # of p1 the next touch is there, on either side by rounding
-                break
             if y[j + 1] <= 0:
                 high = root(low, high, 1)
                 if at(high, 0) <= 0:

@@ -6,25 +6,30 @@ import math
 
 import numpy as np
 import pytest
-from oscillators import modes_on_stop, newton
-from record_simulators import Beam, draw
+from oscillators import slow
+from record_information import truth_of
+from record_simulators import draw
+from record_trials import begun, trial_of
 
-from contact import ImpactOscillator, LinearContact
 from studies.measurement.identify.fit import fit
 from studies.measurement.identify.records import Record
 
+QUICK = {"equation_1": (47, 98, 73, 9, 74, 94), "two_modes": (5, 92, 88, 55, 1, 114)}
+"""Short records of p1 to p6 that determine all parameters.  The drive is known for even seeds; some have two
+touches an orbit (9, 94, 114), some noise above 0.2 % of the gap (47, 9, 94, 5, 92)."""
 
-def oscillator_of(lab: Beam) -> tuple[ImpactOscillator, dict[str, float]]:
-    """An oscillator to start from, and the true values of what is fitted."""
-    rows, law = (lab.omega, lab.c, lab.phi, lab.gamma), newton(0.2)
-    truth = {name: getattr(lab, name) for name in ("gap", "amplitude", "frequency")}
-    truth |= {"free_period": 2 * math.pi / math.sqrt(lab.omega[0] ** 2 - 0.25 * lab.c[0] ** 2)}
-    truth |= {"decay_rate": lab.c[0]}
-    if lab.stiffness is None:
-        rows, truth["restitution"] = (154.0, 3.56, 1.0, 1.0), lab.restitution
-    else:
-        law, truth["stiffness"] = LinearContact(stiffness=2.0 * lab.stiffness), lab.stiffness
-    return modes_on_stop(*rows, law=law, drive=(lab.frequency, 1e-3)), truth
+
+@pytest.mark.parametrize(("kind", "seeds"), [*QUICK.items(), *slow(*((kind, range(30)) for kind in QUICK))])
+def test_truth_is_found_without_knowing_it(kind: str, seeds: tuple[int, ...]) -> None:
+    """Every record is fitted unless it cannot determine a parameter; intervals hold the truth as they say."""
+    trials = [trial_of(kind, seed) for seed in seeds]
+    ended = {trial.seed: trial.sentence for trial in trials if trial.outcome != "fit" and not trial.unseen}
+    assert not ended
+    fits = [trial for trial in trials if trial.outcome == "fit"]
+    assert {one.seed: one.chance for one in fits if not one.sound()} == {}
+    off = {(one.seed, name): size for one in fits for name, size in one.off().items()}
+    assert {at: size for at, size in off.items() if abs(size) > 4.0} == {}
+    assert sum(abs(size) > 1.645 for size in off.values()) <= 0.2 * len(off), off
 
 
 @pytest.mark.parametrize(
@@ -34,7 +39,7 @@ def oscillator_of(lab: Beam) -> tuple[ImpactOscillator, dict[str, float]]:
 def test_phase_offset_sign_and_lost_rows_are_no_obstacle(kind: str, seed: int, known: bool) -> None:
     """The reading is turned, shifted by 3 mm and begins at 7 s; one row in ten is lost."""
     record = draw(kind, seed)
-    start, truth = oscillator_of(record.beam)
+    truth, (_, start) = truth_of(record.beam), begun(record, seed + 1 - seed % 2)
     kept = np.sort(np.random.default_rng(seed).permutation(record.time.size)[: 9 * record.time.size // 10])
     rows = np.column_stack([record.time + 7.0, 3e-3 - record.value])[kept]
     given = truth["frequency"] * 1.001 if known else None
