@@ -3,7 +3,8 @@
     PYTHONPATH=. python tests/studies/record_trials.py KIND FIRST LAST [--workers 2] [--out trials.csv]
 
 The drive is given for even seeds, its frequency off by at most 1e-3 and its amplitude by at most 2 %; for odd
-seeds it is not.  Each trial is stored as soon as it ends; a run goes on where the last one stopped.
+seeds it is not.  Each trial is stored as soon as it ends; a run goes on where the last one stopped.  CPU time
+counts all threads: set OPENBLAS_NUM_THREADS=1.
 """
 
 import csv
@@ -165,8 +166,10 @@ def main() -> None:
     parser.add_argument("--markdown", action="store_true", help="print only the table")
     own = parser.parse_args()
     seeds = range(own.first, own.last + 1)
+    for seed in seeds if own.draw else ():
+        simulators.drawn(own.kind, seed, own.cache)
     if own.draw:
-        return [simulators.drawn(own.kind, seed, own.cache) for seed in seeds] and None
+        return
     with own.out.open("a+", newline="") as stream:
         stream.seek(0)
         trials = [Trial(*map(json.loads, row)) for row in list(csv.reader(stream))[1:]]
