@@ -12,6 +12,7 @@ meets a one-sided stop at x = g.  Two machines are simulated:
 
 import contextlib
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -32,6 +33,10 @@ class Record:
     value: np.ndarray  # [m], with noise
     noise_sd: float  # [m]
     beam: "Beam"  # every parameter of the simulation, in SI units
+    period: int  # of the orbit [drive periods]
+    touches: int  # in the orbit
+    state: np.ndarray  # at drive phase zero
+    touching: int  # at drive phase zero
 
 
 class Rejected(Exception):
@@ -160,6 +165,17 @@ def follow(beam, state, touching, end, numerical=False):
     return state, touching, flights, events
 
 
+def tip(beam, flights, times):
+    """Displacement and velocity of the tip at times within these flights; shape (2, times)."""
+    found, owner = (
+        np.empty((2, len(times))),
+        np.searchsorted([s for s, _ in flights], times, side="right") - 1,
+    )
+    for i in np.unique(owner):
+        found[:, owner == i] = np.kron(np.eye(2), beam.phi) @ flights[i][1](times[owner == i])
+    return found
+
+
 def settle(beam):
     """Follow the motion from grazing until it repeats twice: (length in drive periods, state, touching)."""
     state, touching, strobes = beam.grazing_state, 0, []
@@ -201,7 +217,8 @@ def attempt(kind, rng):
     m, state, touching = settle(beam)
     orbit = m * beam.period
     _, _, flights, events = follow(beam, state, touching, orbit)
-    if not 1 <= sum(side == 0 for _, side, _ in events) <= MOST_IMPACTS:
+    about = m, sum(side == 0 for _, side, _ in events), state, touching
+    if not 1 <= about[1] <= MOST_IMPACTS:
         raise Rejected("number of impacts")
     if kind == "two_modes":
         durations = [
@@ -218,11 +235,8 @@ def attempt(kind, rng):
     while rows < 3 * orbit * rate or rate * beam.period < 16:  # the sampling that the motion asks for
         rows, rate = int(log_uniform(rng, 500, 20000)), log_uniform(rng, 500, 10000)
     times, noise_sd = np.arange(rows) / rate, beam.gap * log_uniform(rng, 0.0005, 0.01)
-    value = noise_sd * rng.standard_normal(rows)
-    owner = np.searchsorted([start for start, _ in flights], times % orbit, side="right") - 1
-    for i in np.unique(owner):
-        value[owner == i] += beam.phi @ flights[i][1](times[owner == i] % orbit)[: len(beam.phi)]
-    return Record(times, value, noise_sd, beam)
+    value = noise_sd * rng.standard_normal(rows) + tip(beam, flights, times % orbit)[0]
+    return Record(times, value, noise_sd, beam, *about)
 
 
 def draw(kind, seed):
@@ -231,3 +245,14 @@ def draw(kind, seed):
     while True:
         with contextlib.suppress(Rejected):
             return attempt(kind, rng)
+
+
+def drawn(kind, seed, folder: Path):
+    """The same, kept in a folder."""
+    path = folder / f"{kind}-{seed}.npz"
+    if not path.exists():
+        folder.mkdir(parents=True, exist_ok=True)
+        np.savez(part := path.with_suffix(".part.npz"), **vars(draw(kind, seed)))
+        part.rename(path)
+    with np.load(path, allow_pickle=True) as kept:
+        return Record(**{name: kept[name][()] for name in kept})

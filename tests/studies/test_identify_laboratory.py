@@ -3,28 +3,34 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 import pytest
-from oscillators import modes_on_stop, newton
-from record_simulators import Beam, draw
+from oscillators import slow
+from record_information import judged_by_information, truth_of
+from record_simulators import draw
+from record_trials import begun, trial_of
 
-from contact import ImpactOscillator, LinearContact
 from studies.measurement.identify.fit import fit
 from studies.measurement.identify.records import Record
 
+QUICK = {"equation_1": (47, 98, 52, 9, 74, 31), "two_modes": (5, 92, 88, 55, 32, 41)}
+"""Short records of p1 to p6 that determine all parameters.  The drive is known for even seeds; some have two
+touches an orbit (9, 31, 32, 41), some noise above 0.2 % of the gap (47, 52, 9, 5, 92, 32, 41)."""
 
-def oscillator_of(lab: Beam) -> tuple[ImpactOscillator, dict[str, float]]:
-    """An oscillator to start from, and the true values of what is fitted."""
-    rows, law = (lab.omega, lab.c, lab.phi, lab.gamma), newton(0.2)
-    truth = {name: getattr(lab, name) for name in ("gap", "amplitude", "frequency")}
-    truth |= {"free_period": 2 * math.pi / math.sqrt(lab.omega[0] ** 2 - 0.25 * lab.c[0] ** 2)}
-    truth |= {"decay_rate": lab.c[0]}
-    if lab.stiffness is None:
-        rows, truth["restitution"] = (154.0, 3.56, 1.0, 1.0), lab.restitution
-    else:
-        law, truth["stiffness"] = LinearContact(stiffness=2.0 * lab.stiffness), lab.stiffness
-    return modes_on_stop(*rows, law=law, drive=(lab.frequency, 1e-3)), truth
+
+@pytest.mark.parametrize(("kind", "seeds"), [*QUICK.items(), *slow(*((kind, range(30)) for kind in QUICK))])
+def test_truth_is_found_without_knowing_it(kind: str, seeds: Sequence[int]) -> None:
+    """A record that determines all parameters is fitted; intervals hold the truth as often as they say."""
+    trials = [trial_of(kind, seed) for seed in seeds]
+    lost = [one for one in trials if one.outcome == "error" or (one.outcome == "refused" and not one.unseen)]
+    assert {one.seed: one.sentence for one in lost} == {}
+    fits = [trial for trial in trials if trial.outcome == "fit"]
+    assert {one.seed: one.chance for one in fits if not one.sound()} == {}
+    off = {(one.seed, name): size for one in fits for name, size in one.off().items()}
+    assert {at: size for at, size in off.items() if abs(size) > 4.0} == {}
+    assert sum(abs(size) > 1.645 for size in off.values()) <= 0.2 * len(off), off
 
 
 @pytest.mark.parametrize(
@@ -32,9 +38,12 @@ def oscillator_of(lab: Beam) -> tuple[ImpactOscillator, dict[str, float]]:
     [("equation_1", 9, True), ("equation_1", 11, True), ("equation_1", 2, False), ("two_modes", 1, True)],
 )
 def test_phase_offset_sign_and_lost_rows_are_no_obstacle(kind: str, seed: int, known: bool) -> None:
-    """The reading is turned, shifted by 3 mm and begins at 7 s; one row in ten is lost."""
+    """The reading is turned, shifted by 3 mm and begins at 7 s; one row in ten is lost.
+
+    The errors are those that the simulator gives at the truth.
+    """
     record = draw(kind, seed)
-    start, truth = oscillator_of(record.beam)
+    truth, (_, start) = truth_of(record.beam), begun(record, seed, False)
     kept = np.sort(np.random.default_rng(seed).permutation(record.time.size)[: 9 * record.time.size // 10])
     rows = np.column_stack([record.time + 7.0, 3e-3 - record.value])[kept]
     given = truth["frequency"] * 1.001 if known else None
@@ -42,6 +51,8 @@ def test_phase_offset_sign_and_lost_rows_are_no_obstacle(kind: str, seed: int, k
     off = found.estimate[: len(truth)] - np.array(list(truth.values()))
     assert np.all(np.abs(off) < 3.5 * found.errors[: len(truth)]) and not found.too_small
     assert found.noise == pytest.approx(record.noise_sd, rel=0.15)
+    least = [error / math.sqrt(0.9) for error in judged_by_information(record, tuple(truth)).values()]
+    assert found.errors[: len(truth)] == pytest.approx(least, rel=0.2)
     sensor = dict(zip(found.names, found.estimate, strict=True))
     # a cosine, from 7 s on
     turn = 0.5 * math.pi - 2.0 * math.pi * sensor["frequency"] * 7.0 - sensor["phase"]
