@@ -1,0 +1,225 @@
+"""What is wrong with a record of displacement: before a fit, and by the residuals of one.
+
+A motion that repeats after m periods of a drive of frequency f has lines at k f/m only. Impacts make corners:
+a row still agrees with the parabola through the three rows before it or after it. Noise is independent from
+row to row. Times in s, readings and residuals (reading less prediction) in m, each of shape (rows,).
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.fft import next_fast_len, rfft
+from scipy.linalg import lstsq
+from scipy.optimize import minimize_scalar
+from scipy.signal import detrend, find_peaks, medfilt
+
+from studies.measurement.identify.kicks import harmonics
+
+Array = NDArray[np.float64]
+
+STRONG, NEAR, RESOLVED, UNRESOLVED = 0.3, 3e-3, 0.05, 0.3
+"""Height of the drive's line over the strongest (settled motions: above 0.7). Part by which it may be off, or
+part of 1/span, by which other lines move one in a record of three orbits and in a shorter one."""
+STICKING, STRAY, SURE, ALIKE, MANY = 6.0, 12.0, 8.0, 0.025, 6000
+"""Rows at an extreme reading over rows at the next (turning point: 2.4, flat: 5.3). Standard deviations of an
+outlier (corners: 8), of an estimate that is no chance. Part that an orbit leaves (noise of 1 %: 0.016); rows
+that suffice to see it."""
+MISREAD = {1.0: "", 1e-3: "in kHz", 2.0 * math.pi: "in rad/s", 60.0: "in 1/min", 2.0: "2 f", 0.5: "f/2"}
+"""What a given drive may be, by its ratio to that of the record."""
+
+
+def peaks(times: Array, values: Array) -> tuple[Array, Array]:
+    """Frequencies [Hz] of the lines of a record, the strongest first, and their heights over its height."""
+    rows, span = times.size, float(times[-1] - times[0])
+    even = detrend(np.interp(np.linspace(times[0], times[-1], rows), times, values))
+    size = next_fast_len(8 * rows, real=True)
+    height = np.log(np.abs(rfft(even * np.hanning(rows), size)) + 1e-300)
+    first = int(1.5 * size / rows)  # below it are the mean and a drift
+    tops = find_peaks(height[first:])[0]
+    at = first + (tops[np.argsort(-height[first + tops])] if tops.size else np.zeros(1, int))
+    low, middle, high = (height[at + way] for way in (-1, 0, 1))
+    moved = 0.5 * (low - high) / np.minimum(low - 2.0 * middle + high, -1e-9)
+    return (at + np.clip(moved, -1.0, 1.0)) * (rows - 1) / (span * size), np.exp(middle - middle[0])
+
+
+def strongest_line(times: Array, values: Array) -> float:
+    """Frequency of the strongest line of a record [Hz]."""
+    return float(peaks(times, values)[0][0])
+
+
+def orbit_of(times: Array, values: Array, pace: float) -> tuple[NDArray[np.complex128], float]:
+    """Lines of an orbit that repeats with `pace` [Hz], as far as rows resolve, and what they leave [m]."""
+    most = int(min(90, 0.42 * times.size / (pace * (times[-1] - times[0])), times.size / 10))
+    rows = np.sort(
+        np.random.default_rng(0).permutation(times.size)[:MANY]
+    )  # equal steps would hide some lines
+    return harmonics(times[rows], values[rows], pace, max(1, most))
+
+
+def repetition(times: Array, values: Array, frequency: float) -> Array:
+    """What orbits of 1, 2, ... drive periods leave of a record [m], up to 12, if it has two of them."""
+    most = max(1, min(12, int((times[-1] - times[0]) * frequency / 2.0)))
+    return np.array([orbit_of(times, values, frequency / m)[1] for m in range(1, most + 1)])
+
+
+def drive_found(times: Array, values: Array, frequency: float) -> tuple[float, str] | None:
+    """The drive by the record [Hz] and a sentence, if the given `frequency` is not that of a strong line."""
+    lines, heights = peaks(times, values)
+    lines, span = lines[heights > STRONG], float(times[-1] - times[0])
+    rate = (times.size - 1) / span
+    seen = abs(frequency - rate * round(frequency / rate)) if frequency < 2.0 * rate else frequency
+    off, short = float(np.min(np.abs(lines - seen))), lines[0] * span < 6.0 and 0.3 < frequency * span < 2.0
+    if np.ptp(values) == 0.0 or short or off <= max(NEAR * frequency, RESOLVED / span):
+        return None
+    if off * span < UNRESOLVED and repetition(times, values, float(lines[0])).min() > ALIKE * values.std():
+        return None
+    for at in lines.tolist():
+        for factor, words in MISREAD.items():
+            part = frequency / (factor * at) - 1.0
+            if abs(part) < (0.01 if words else 0.15):
+                how = words or f"off by {100.0 * part:+.3g} %"
+                return at, f"the given drive of {frequency:.6g} Hz is {how}: the record's is f = {at:.6g} Hz"
+    return float(
+        lines[0]
+    ), f"the strongest line is at {lines[0]:.6g} Hz, none at the given {frequency:.6g} Hz"
+
+
+def unit_of(found: float, given: float, what: str) -> str | None:
+    """Words for the unit in which the record or the given value of `what` would agree with the other one."""
+    base = "seconds" if "period" in what or "time" in what else "metres"
+    units = {1e3: (f"milli{base}", "divide by 1000"), 1e6: (f"micro{base}", "divide by 1e6")}
+    if "frequency" in what:
+        units = {1e-3: ("kilohertz", "multiply by 1000"), 1e-6: ("megahertz", "multiply by 1e6")}
+    units |= {1.0 / 9.81: ("g", "multiply by 9.81"), 2.0 * math.pi: ("radians", "divide by 2 pi")}
+    for factor, (unit, remedy) in units.items():
+        for one, other, thing in ((given, found, f"the given {what}"), (found, given, "the record")):
+            if abs(one - factor * other) < 0.15 * abs(factor * other):
+                return f"{thing} looks like {unit}: {remedy}"
+    return None
+
+
+def off_neighbours(times: Array, values: Array) -> tuple[Array, float]:
+    """How far rows are off both parabolas beside them, over the noise, and the noise [m], by the median."""
+
+    def ahead(t: Array, x: Array) -> Array:
+        a, b, c, d = (t[i : t.size - 3 + i] for i in range(4))
+        parts = [(d - q) * (d - r) / ((p - q) * (p - r)) for p, q, r in ((a, b, c), (b, c, a), (c, a, b))]
+        off = x[3:] - sum(part * x[i : x.size - 3 + i] for i, part in enumerate(parts))
+        return np.append(np.zeros(3), off / np.sqrt(1.0 + sum(part**2 for part in parts)))
+
+    before, after = ahead(times, values), ahead(-times[::-1], values[::-1])[::-1]
+    noise = max(1.4826 * float(np.median(np.abs(before))), 1e-4 * float(np.ptp(values)))
+    return np.where(before * after > 0.0, np.minimum(np.abs(before), np.abs(after)), 0.0) / noise, noise
+
+
+def poor_rows(times: Array, values: Array, off: Array, frequency: float) -> list[str]:
+    """Saturation, by extreme readings, and outliers: rows `off` at more than one phase, unlike impacts."""
+    readings, counts = np.unique(values, return_counts=True)
+    stuck = [end for end, step in ((0, 1), (-1, -1)) if counts[end] > STICKING * (counts[end + step] + 0.5)]
+    where = [f"{1e3 * readings[end]:.4g} mm in {counts[end]} of {values.size} rows" for end in stuck]
+    found = [f"readings stick at {one}: the sensor or the recorder saturates" for one in where]
+    rows, phase = np.flatnonzero(off > STRAY), np.exp(2j * math.pi * frequency * times[off > 0.5 * STRAY])
+    if 0 < rows.size < 3 or (rows.size and abs(phase.mean()) < 0.8):
+        first = f"the first in row {rows[0] + 1} at {times[rows[0]]:.4g} s"
+        found += [
+            f"{rows.size} of {times.size} rows are outliers, {first}: {STRAY:g} standard deviations off"
+        ]
+    return found
+
+
+def defects(times: Array, values: Array, frequency: float | None) -> list[str]:
+    """What the record alone shows, with the drive `frequency` [Hz] if it is given; empty if it is sound."""
+    if np.ptp(values) == 0.0:
+        return ["the record is constant"]
+    rows, span, line = times.size, float(times[-1] - times[0]), strongest_line(times, values)
+    other = drive_found(times, values, frequency) if frequency else None
+    cycles = (other[0] if other else frequency or line) * span * rows / (rows - 1)
+    pace = f"{rows / cycles:.2g} rows a drive period: the sampling ({(rows - 1) / span:.3g} Hz) is too slow"
+    size = np.array([part.std() for part in np.array_split(values, max(1, min(8, int(line * span))))])
+    fall = size[0] / max(size[-1], 1e-300)  # below 2 for a settled motion
+    decays = size.size > 3 and (fall > 20.0 or (fall > 3.0 and bool(np.all(np.diff(size) < 0.0))))
+    sentences = {
+        f"the record has {rows} rows of {cycles:.2g} drive periods; it must have at least 3": cycles < 2.99,
+        f"there are {pace}: aliasing": rows < 2.0 * cycles,
+        f"the record is a free decay: no line of it lasts, it falls to 1/{fall:.2g}": decays,
+    }
+    found = [sentence for sentence, true in sentences.items() if true]
+    return found + poor_rows(times, values, off_neighbours(times, values)[0], line)
+
+
+def added(times: Array, residuals: Array, pace: float) -> list[str]:
+    """A hum and a drift that last, beside what repeats with the orbit."""
+    span, rows, found = float(times[-1] - times[0]), times.size, list[str]()
+    t, turn = (times - times.mean()) / span, 2.0j * math.pi * times
+    orders = np.arange(1, max(2, int(min(30, 0.42 * rows / (pace * span), rows / 10))))
+    waves = np.exp(pace * turn * orders[:, None])
+    matrix, thirds = np.vstack([t, t**0, waves.real, waves.imag]).T, np.array_split(np.arange(rows), 3)
+    coefficients = lstsq(matrix, residuals)[0]
+    rest, slope = residuals - matrix @ coefficients, float(coefficients[0])
+    at = strongest_line(times, rest)
+    # a wave or a slope that lasts is the same in each third
+    tones = [2.0 * np.mean((rest * np.exp(-at * turn))[third]) for third in thirds]
+    tone, apart = np.mean(tones), abs(at - pace * max(1, round(at / pace))) * span
+    lasts = max(np.abs(tones - tone)) < 0.5 * abs(tone)
+    if lasts and apart > 1.0 and abs(tone) * math.sqrt(rows / 2) > SURE * rest.std():
+        found = [f"a line at {at:.4g} Hz of {1e3 * abs(tone):.2g} mm that is no harmonic of the orbit: hum"]
+    slopes = [np.polyfit(t[third], (rest + slope * t)[third], 1)[0] / slope for third in thirds]
+    if abs(slope) * math.sqrt(rows / 12) > SURE * rest.std() and min(slopes) > 0.5:
+        found += [f"a drift of {1e3 * slope / span:.2g} mm/s"]
+    return found
+
+
+def walked(times: Array, values: Array, frequency: float, period: int) -> list[str]:
+    """A drive that is off: the orbit of another frequency leaves less of the record."""
+    span, lines = times[-1] - times[0], peaks(times, values)[0]
+    near = lines[np.argmin(np.abs(lines - frequency))] + np.array([-0.1, 0.1]) / span
+    best = minimize_scalar(lambda at: orbit_of(times, values, at / period)[1], bounds=near, method="bounded")
+    if best.fun > 0.8 * orbit_of(times, values, frequency / period)[1]:
+        return []
+    walk = f"{2.0 * math.pi * abs(best.x - frequency) * span:.2g} rad"
+    return [f"the phase of the drive walks by {walk}: the drive is at {best.x:.7g} Hz, not {frequency:.7g}"]
+
+
+def filtered(times: Array, values: Array, predicted: Array, pace: float) -> list[str]:
+    """A filter of one pole: readings over predictions, line by line, fall as (1 + (nu/corner)^2)^(-1/2)."""
+    rate, (read, noise) = times.size / (times[-1] - times[0]), orbit_of(times, values, pace)
+    known = orbit_of(times, predicted, pace)[0]
+    error = noise / math.sqrt(2.0 * min(times.size, MANY)) / np.maximum(np.abs(known[1:]), 1e-300)
+    nu, corners = pace * np.arange(1, known.size), np.append(np.geomspace(pace, 4.0 * rate, 200), 1e9 * rate)
+    off = np.log(np.abs(read[1:] / known[1:])) + 0.5 * np.log1p((nu / corners[:, None]) ** 2)
+    weight = np.where(error < 0.1, np.hypot(error, 3e-4) ** -2.0, 0.0)
+    left = ((off - (off @ weight)[:, None] / max(weight.sum(), 1e-300)) ** 2) @ weight
+    best = int(np.argmin(left))
+    if np.sum(weight > 0.0) < 6 or left[best] > 0.3 * left[-1] or left[-1] - left[best] < SURE**2:
+        return []
+    return [f"lines fall below the predicted ones as by a low-pass near {corners[best]:.0f} Hz"]
+
+
+def contradictions(times: Array, values: Array, residuals: Array, frequency: float, period: int) -> list[str]:
+    """What residuals show that are no noise; the drive is at `frequency` [Hz], a `period` 0 is unknown."""
+    if period == 0:
+        left = repetition(times, values, frequency)
+        period = int(np.argmax(left < 1.3 * left.min())) + 1
+    pace, predicted, bare = frequency / period, values - residuals, residuals - medfilt(residuals, 5)
+    off, noise = off_neighbours(times, values)
+    stray = np.minimum(np.abs(bare) / (1.4826 * np.median(np.abs(bare[bare != 0.0]))), 3.0 * off)
+    found = added(times, residuals, pace) + poor_rows(times, values, stray, frequency)
+    found += walked(times, values, frequency, period)
+    t = (times - times.mean()) / (times[-1] - times[0])
+    change = lstsq(np.array([t * predicted, predicted, t**0]).T, residuals)[0][0]
+    if abs(change) * (t * predicted).std() > 0.6 * residuals.std():
+        found += [f"the amplitude changes by {100.0 * change:.2g} % through the record"]
+    if found := found or filtered(times, values, predicted, pace):
+        return found
+    parts = np.array_split(np.arange(t.size), max(1, min(8, int(pace * (times[-1] - times[0])))))
+    size = np.array([residuals[part].std() for part in parts])
+    quiet = int(np.argmin(size > 3.0 * np.median(size)))
+    if len(parts) > 3 and quiet > 0 and np.all(size[quiet:] < 3.0 * np.median(size)):
+        return [f"the residuals fade within the first {times[parts[quiet][0]] - times[0]:.2g} s: a transient"]
+    left = repetition(times, values, frequency)
+    if left.min() > max(ALIKE * values.std(), 3.0 * noise):
+        return [f"the record does not repeat within {left.size} drive periods"]
+    return ["the model is too small for the record"]
