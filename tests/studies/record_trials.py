@@ -24,7 +24,7 @@ from record_information import blind, truth_of
 
 from beam import ModalModel, Refusal, single_mode
 from contact import ContactError, HarmonicDrive, ImpactOscillator, LinearContact, NewtonRestitution, Stop
-from studies.measurement.identify.estimates import estimates_of, traded
+from studies.measurement.identify.estimates import estimates_of
 from studies.measurement.identify.fit import TOO_SMALL, Fit, fit
 from studies.measurement.identify.records import Record
 from studies.physics.parameters import with_values
@@ -62,11 +62,10 @@ class Trial:
         return self.outcome == "fit" and self.chance >= TOO_SMALL
 
     def off(self) -> dict[str, float]:
-        """Each error over the standard deviation of its 90 % interval."""
+        """Each error over the standard deviation that the 90 % interval states to the side of the truth."""
         found = {name: value[:4] for name, value in self.values.items() if len(value) > 1}
-        return {
-            n: (at - true) / max((high - low) / 3.29, 1e-99) for n, (true, at, low, high) in found.items()
-        }
+        sides = {n: at - low if at > true else high - at for n, (true, at, low, high) in found.items()}
+        return {n: (v[1] - v[0]) / max(sides[n] / 1.645, 1e-99) for n, v in found.items()}
 
 
 def begun(record: simulators.Record, seed: int, known: bool) -> tuple[Record, ImpactOscillator]:
@@ -88,7 +87,7 @@ def begun(record: simulators.Record, seed: int, known: bool) -> tuple[Record, Im
 
 def intervals_of(found: Fit) -> dict[str, Any]:
     """The rows of the fit that the study reports, by name."""
-    return {row.parameter: row for row in estimates_of("", found, traded(found, quick=False))}
+    return {row.parameter: row for row in estimates_of("", found)}
 
 
 def trial_of(kind: str, seed: int, folder: Path | None = None) -> Trial:

@@ -104,6 +104,12 @@ class Displacement(Prediction):
         counts = [self.first * 2**k for k in range(64) if 0 < self.first * 2**k < 0.75 * rows]
         return [*(self.part(slice(count)) for count in counts), self]
 
+    def again(self) -> Displacement:
+        """A copy with a start of its own."""
+        found = copy.copy(self)
+        found.orbit = [*self.orbit]
+        return found
+
     def part(self, rows: slice) -> Displacement:
         """The prediction of some rows."""
         found = copy.copy(self)
@@ -134,7 +140,9 @@ class Displacement(Prediction):
         end = begun + self.period * oscillator.period
         for _ in range(STEPS):
             at = State(displacement=state[:n], velocity=state[n:], time=begun)
-            found = motion_derivatives(oscillator, at, periods=_periods(end, oscillator), times=np.array([end]))
+            found = motion_derivatives(
+                oscillator, at, periods=_periods(end, oscillator), times=np.array([end])
+            )
             off = np.append(found.run.displacement[0], found.run.velocity[0]) - state
             step = np.linalg.solve(np.eye(2 * n) - found.states[0], off)
             if not np.abs(step / self.scale).max() < FAR:

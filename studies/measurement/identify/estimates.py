@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import combinations
 from typing import Any
@@ -12,7 +12,7 @@ import numpy as np
 from studies.measurement.identify import figure
 from studies.measurement.identify.displacement import UNITS
 from studies.measurement.identify.fit import Fit
-from studies.measurement.identify.profiles import Profile, profile
+from studies.measurement.identify.profiles import Profile, rows_of
 from studies.physics.parameters import parameters_of
 from studies.shell.run import Run
 
@@ -100,18 +100,12 @@ class Quality:
     chance: float
 
 
-def estimates_of(name: str, found: Fit, profiles: Sequence[Profile]) -> list[Estimate]:
-    """The rows of a fit; intervals come from the likelihood where its profile is known."""
+def estimates_of(name: str, found: Fit) -> list[Estimate]:
+    """The rows of a fit."""
     units = {name: one.unit for name, one in parameters_of(found.oscillator).items()} | UNITS
-    intervals = dict(zip(found.names, found.intervals(), strict=True))
-    for one in {row.parameter for row in profiles}:
-        points = [row for row in profiles if row.parameter == one]
-        values, depth = np.array([(row.value, max(row.depth, 0.0)) for row in points]).T
-        middle = found.estimate[found.names.index(one)]
-        roots, reach = np.copysign(depth**0.5, values - middle), found.reach
-        intervals[one] = np.interp([-reach, reach], roots, values)
-    ends = np.array([intervals[one] for one in found.names])
-    numbers = np.vstack([found.start, found.estimate, found.errors, ends.T, found.before]).tolist()
+    numbers = np.vstack(
+        [found.start, found.estimate, found.errors, found.intervals().T, found.before]
+    ).tolist()
     words, correlations = (found.names, [units[one] for one in found.names]), found.correlations.tolist()
     rows = zip(*words, *numbers, map(tuple, correlations), strict=True)
     return [Estimate(name, *row) for row in rows]
@@ -130,24 +124,25 @@ def correlated(name: str, found: Fit) -> list[Correlation]:
 def traded(found: Fit, quick: bool) -> list[Profile]:
     """The profile of each parameter that trades off with another, the most correlated pair first.
 
-    The small form has this pair alone, with fewer points.
+    The small form has this pair alone.
     """
     size = np.abs(found.correlations) - np.eye(len(found.names))
     partners = {i: int(np.argmax(row)) for i, row in enumerate(size) if row.max() > TRADE}
     partners = {i: k for i, k in partners.items() if max(i, k) < len(found.problem.names)}
     order = sorted(partners, key=lambda i: -size[i, partners[i]])
     kept = [i for k, i in enumerate(order) if partners[i] not in order[:k] or partners[partners[i]] != i]
-    return [
-        row
-        for i in kept[: 1 if quick else None]
-        for row in profile(found, found.names[i], found.names[partners[i]], points=5 if quick else 9)
-    ]
+    rows = list[Profile]()
+    for i in kept[: 1 if quick else None]:
+        walk = found.walk(found.names[i])
+        points = [point for way in (-1.0, 1.0) for point in walk.side(way * found.reach)[0]]
+        rows += rows_of(walk, points, found.names[partners[i]])
+    return rows
 
 
 def report(run: Run, found: Mapping[str, Fit]) -> dict[str, Any]:
     """Tables and figure of the fits."""
     profiles = {name: traded(one, run.quick) for name, one in found.items()}
-    estimates = [row for name, one in found.items() for row in estimates_of(name, one, profiles[name])]
+    estimates = [row for name, one in found.items() for row in estimates_of(name, one)]
     caption = "Values with standard errors, 90 % intervals, where the fit began, and the scene's values."
     run.table("parameters", estimates, caption, of=Estimate, show=SHOWN)
     pairs = [pair for name, one in found.items() for pair in correlated(name, one)]

@@ -12,10 +12,8 @@ the autocorrelation of its residuals (Ljung and Box, Biometrika 65 (1978) 297).
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Any
-
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
@@ -24,9 +22,11 @@ from scipy.special import expit, logit
 from beam import InvalidValue, Refusal
 from contact import ContactError, ImpactOscillator
 from studies import letter
+from studies.measurement.identify.descent import Found
 from studies.measurement.identify.displacement import SENSOR
 from studies.measurement.identify.predictions import Prediction
-from studies.measurement.identify.problem import MOST, Problem
+from studies.measurement.identify.problem import MOST, SETTLED, Problem
+from studies.measurement.identify.profiles import Point, Walk
 from studies.measurement.identify.records import READ_OUT, Record
 from studies.measurement.identify.starts import predictions_of
 from studies.physics.parameters import parameters_of, require_names
@@ -48,11 +48,12 @@ LAGS = 10
 LEASH = 1.0
 """Prior of the parameters while the beginning of a record is fitted, which need not determine all of them."""
 
-EARLY, FINISHED, SAME = 40, 3, 1e-4
-"""Steps from each start; starts that are fitted to the end; relative difference of chi^2 of two that are one."""
+EARLY, ROUGH, FINISHED, SAME = 40, 1e-3, 3, 3e-3
+"""Most steps from each start, until chi^2 falls by no more than this part; how many are fitted to the end;
+relative difference of values that are the same."""
 
-SETTLED = 0.1
-"""Fall of chi^2 that may be left to a further step, in units of the noise's variance: a third of an error."""
+AGAIN, BETTER = 4, 0.2
+"""How often a fit begins again at a point of a profile that is better, and by how much of the noise's variance."""
 
 PART, LOST = 0.3, 2.0
 """Part of the largest from which a parameter takes part in a direction that is not determined; standard error
@@ -67,7 +68,8 @@ class Fit:
 
     `noise`: standard deviation of x [m], or of an excess in units of its error; `freedom`: rows less
     unknowns; `residuals`: observed less predicted, shape of the record's `observed`; `chance`: probability of
-    residuals of such size or pattern from noise alone; `problem` and `unknowns`: what was solved.
+    residuals of such size or pattern from noise alone; `problem` and `unknowns`: what was solved; `walks`: the
+    intervals of the parameters along which chi^2 is no parabola, by its profile.
     """
 
     record: Record
@@ -84,16 +86,27 @@ class Fit:
     chance: float
     problem: Problem
     unknowns: Array
+    walks: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
     @property
     def errors(self) -> Array:
-        """Standard errors."""
-        return np.sqrt(np.diag(self.covariance))
+        """Standard errors; of a parameter with a profile those that would give its interval."""
+        found = np.sqrt(np.diag(self.covariance))
+        for name, (low, high) in self.walks.items():
+            found[self.names.index(name)] = (high - low) / (2.0 * self.reach)
+        return np.asarray(found)
 
     @property
     def correlations(self) -> Array:
         """Shape (n, n)."""
-        return self.covariance / np.outer(self.errors, self.errors)
+        errors = np.sqrt(np.diag(self.covariance))
+        return self.covariance / np.outer(errors, errors)
+
+    def walk(self, name: str) -> Walk:
+        """The likelihood along a parameter."""
+        variance, i = (self.noise / self.problem.noise) ** 2, self.names.index(name)
+        error = float(np.sqrt(self.covariance[i, i]))
+        return Walk(self.problem, self.unknowns, error, variance, name)
 
     @property
     def too_small(self) -> bool:
@@ -112,14 +125,15 @@ class Fit:
         They are those of the unknowns of the problem, of a restitution r those of log(r/(1 - r)).
         """
         log = self.problem.log[self.problem.named]
-        wide = self.reach * self.errors
+        wide = self.reach * np.sqrt(np.diag(self.covariance))
         found = self.estimate[:, None] + np.outer(wide, [-1.0, 1.0])
         factor = np.exp(wide[log] / self.estimate[log])
         found[log] = self.estimate[log, None] * np.column_stack([1.0 / factor, factor])
         for i, name in enumerate(self.names):
             if name == "restitution" and 0.0 < (r := self.estimate[i]) < 1.0:
-                wide = self.reach * self.errors[i] / (r * (1.0 - r))
-                found[i] = expit(logit(r) + np.array([-wide, wide]))
+                part = wide[i] / (r * (1.0 - r))
+                found[i] = expit(logit(r) + np.array([-part, part]))
+            found[i] = self.walks.get(name, found[i])
         return np.asarray(found)
 
 
@@ -142,10 +156,35 @@ def fit(
     unit = noise or (letter.AMPLITUDE_STABILITY if record.kind == "transitions" else READ_OUT)
     starts = predictions_of(record, oscillator, tuple(names), free)
     problem, found = _best([Problem(one, begun, tuple(names), unit) for one, begun in starts], known)
-    return _judged(problem, found, oscillator, known)
+    for _ in range(AGAIN):
+        result = _judged(problem, found, oscillator, known)
+        walks, lowest = _walked(result)
+        if lowest is None:
+            break
+        found = problem.solve(problem.unknowns_of(lowest.values))
+    return replace(result, walks=walks)
 
 
-def _best(problems: Sequence[Problem], known: bool) -> tuple[Problem, Any]:
+def _walked(found: Fit) -> tuple[dict[str, tuple[float, float]], Point | None]:
+    """Intervals by profiles where chi^2 is no parabola, and a point that is better than the fit, if there is
+    one."""
+    walks = dict[str, tuple[float, float]]()
+    for name in [] if found.too_small else found.problem.names:
+        walk = found.walk(name)
+        if walk.bent(found.reach):
+            sides = [walk.side(way * found.reach) for way in (-1.0, 1.0)]
+            lowest = min(
+                (point for points, _ in sides for point in points),
+                key=lambda one: one.rise,
+                default=walk.best,
+            )
+            if lowest.rise < -BETTER:
+                return walks, lowest
+            walks[name] = sides[0][1], sides[1][1]
+    return walks, None
+
+
+def _best(problems: Sequence[Problem], known: bool) -> tuple[Problem, Found]:
     """The problem that is solved best, and its solution: all are begun, the best that differ are finished."""
     rows = problems[0].observed.size
     if rows < problems[0].unknowns + (not known):
@@ -156,15 +195,16 @@ def _best(problems: Sequence[Problem], known: bool) -> tuple[Problem, Any]:
     for i, problem in enumerate(problems):
         first = _part(problem, 0)
         try:
-            found = first.solve(problem.start, EARLY)
-            begun.append((found.cost, i, found.x))
+            found = first.solve(problem.start, EARLY, ROUGH * first.freedom)
+            begun.append((float(np.sum(problem.residuals(found.x) ** 2)), i, found.x))
         except (ContactError, Refusal) as error:
             failure = failure or error
-    ends, last = list[tuple[Problem, Any]](), -math.inf
-    for cost, i, unknowns in sorted(begun, key=lambda one: one[:2]):
-        if len(ends) == FINISHED or cost < last * (1.0 + SAME):
+    ends, tried = list[tuple[Problem, Found]](), list[Array]()
+    for _cost, i, unknowns in sorted(begun, key=lambda one: one[:2]):
+        problem, values = problems[i], problems[i].values(unknowns)[problems[i].named]
+        if len(ends) == FINISHED or any(np.allclose(values, other, rtol=SAME, atol=0.0) for other in tried):
             continue
-        problem, last = problems[i], cost
+        tried.append(values)
         try:
             for k in range(1, len(problem.prediction.parts()) - 1):
                 unknowns = _part(problem, k).solve(unknowns).x
@@ -173,7 +213,7 @@ def _best(problems: Sequence[Problem], known: bool) -> tuple[Problem, Any]:
             failure = failure or error
     if not ends:
         raise failure or InvalidValue("no motion like that of the record was found to start from")
-    return min(ends, key=lambda end: float(end[1].cost))
+    return min(ends, key=lambda end: end[1].chi2)
 
 
 def _part(problem: Problem, number: int) -> Problem:
@@ -184,18 +224,19 @@ def _part(problem: Problem, number: int) -> Problem:
     return Problem(parts[number], problem.oscillator, problem.names, problem.noise, LEASH)
 
 
-def _judged(problem: Problem, found: Any, oscillator: ImpactOscillator, known: bool) -> Fit:
+def _judged(problem: Problem, found: Found, oscillator: ImpactOscillator, known: bool) -> Fit:
     """The fit that a solution is; InvalidValue if the record does not determine it."""
     prediction, rows = problem.prediction, problem.observed.size
-    spread = 1.0 if known else float(np.sqrt(2.0 * found.cost / problem.freedom))
+    spread = 1.0 if known else float(np.sqrt(found.chi2 / problem.freedom))
     names = problem.names + prediction.sensor
     own = problem.named
     lengths = np.linalg.norm(found.jac, axis=0)
     lengths[lengths == 0.0] = 1.0
-    left, singular, axes = np.linalg.svd(found.jac / lengths, full_matrices=False)
-    gain = float(np.sum((left.T @ found.fun) ** 2)) / spread**2
-    if gain > SETTLED:
-        raise InvalidValue(f"the fit has not settled after {MOST} steps: chi^2 would still fall by {gain:.2g}")
+    _left, singular, axes = np.linalg.svd(found.jac / lengths, full_matrices=False)
+    if (gain := found.left / spread**2) > SETTLED:
+        raise InvalidValue(
+            f"the fit has not settled after {MOST} steps: chi^2 would still fall by {gain:.2g}"
+        )
     slopes, values = problem.slopes(found.x), problem.values(found.x)
     sizes = np.where(problem.log, LOST * np.abs(values), np.maximum(np.abs(values), problem.sizes))
     axes = axes / lengths @ slopes.T

@@ -44,9 +44,13 @@ VALLEY, LIKE = 50.0, 4
 SAME, NEAR = 1.3, 3e-3
 """An orbit leaves at most so much of the least scatter; part by which a given drive frequency may be off."""
 
-LINES, DRIVES, HIGH, ENOUGH = 6, 4, 0.05, 3000
+LINES, DRIVES, HIGH, ENOUGH = 6, 4, 0.05, 1500
 """Lines of the spectrum that give an orbit, harmonics of it that may be the drive, their least part of the
 highest; rows that show whether a record repeats."""
+
+
+ROUND = 1e-11
+"""Part by which the diagonal of normal equations is raised: harmonics that the rows do not show are small."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -115,7 +119,8 @@ def harmonics(times: Array, values: Array, pace: float, count: int) -> tuple[Com
     waves = np.multiply.accumulate(np.broadcast_to(turn, (count, times.size)), axis=0)
     matrix = np.vstack([np.ones(times.size), waves.real, waves.imag])
     normal, moments = matrix @ matrix.T, matrix @ values
-    found = np.linalg.lstsq(normal, moments, rcond=None)[0]  # much faster than of the matrix itself
+    normal[np.diag_indices_from(normal)] *= 1.0 + ROUND  # where rows are missing
+    found = np.linalg.solve(normal, moments)  # much faster than by the matrix itself
     rest, spare = values - found @ matrix, max(times.size - found.size, 1)
     coefficients = 0.5 * (found[1 : count + 1] - 1j * found[count + 1 :])
     return np.append(found[0] + 0j, coefficients), math.sqrt(float(rest @ rest) / spare)

@@ -7,6 +7,7 @@ cyclic order that fits best. Transitions: the fold of each p_m. A displacement i
 
 from __future__ import annotations
 
+import copy
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import replace
@@ -49,6 +50,10 @@ class Prediction(ABC):
     def parts(self) -> Sequence[Prediction]:
         """What is fitted one after the other, itself last."""
         return [self]
+
+    def again(self) -> Prediction:
+        """A copy, whose searches leave this one where it is."""
+        return copy.copy(self)
 
     @abstractmethod
     def values(self, oscillator: ImpactOscillator, extra: Array) -> Array:

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
+import copy
 import math
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import least_squares
 
 from beam import InvalidValue, Refusal
 from contact import ContactError, ImpactOscillator
+from studies.measurement.identify.descent import Found, descend
 from studies.measurement.identify.predictions import Prediction
 from studies.physics.parameters import parameters_of, with_values
 
@@ -22,6 +21,12 @@ MOST = 100
 GAIN = 1e-3
 """A fit ends where a step lowers chi^2 by less than this times the noise's variance: 0.03 standard errors."""
 
+SETTLED = 0.1
+"""Fall of chi^2 that may be left to a further step, in units of the noise's variance: a third of an error."""
+
+
+RANGES = {"decay_rate": (0.0, math.inf), "restitution": (0.0, 1.0)}
+"""The parameters that may come close to an end of their range; there a logarithm would have no end."""
 
 RESPONSE, STEP = ("free_period", "decay_rate", "frequency"), 1e-6
 """The parameters that the response of the tip hangs on; a part of each, for differences of it."""
@@ -30,8 +35,8 @@ RESPONSE, STEP = ("free_period", "decay_rate", "frequency"), 1e-6
 class Problem:
     """Residuals and Jacobian in units of the noise, by unknowns u without units.
 
-    A parameter p that starts at p_0 > 0 has u = log(p/p_0), and no search leaves the physical range; another
-    one, and a restitution, has u = p/size.  Where amplitude Z and phase of the drive are both fitted, theirs
+    A parameter p that starts at p_0 > 0 has u = log(p/p_0), another one, and those of `RANGES`, u = p/size: no
+    search leaves the physical range.  Where amplitude Z and phase of the drive are both fitted, theirs
     are those of the steady motion Y = Z exp(i phase) R of the tip, R its response to the base: near a
     resonance the record determines Y, and hardly Z.  The further unknowns are held by their prior, the
     parameters by a `leash`: a standard deviation of u about where it starts.
@@ -50,11 +55,14 @@ class Problem:
         self.sizes = np.concatenate([[known[name].size for name in names], prediction.sizes])
         values = np.concatenate([[known[name].value for name in names], prediction.extra])
         self.log = (np.arange(values.size) < len(names)) & (values > 0.0)
-        self.log[[i for i, name in enumerate(names) if name == "restitution"]] = False
+        self.log[[i for i, name in enumerate(names) if name in RANGES]] = False
         self.sizes[self.log] = values[self.log]
         self.steady, self.response = self._steady(), 1.0 + 0j
         self.response = self._response(values)
         self.start = self.unknowns_of(values)
+        ranges = [RANGES.get(name, (-math.inf, math.inf)) for name in names]
+        ranges += [(-math.inf, math.inf)] * prediction.sizes.size
+        self.bounds = np.array(ranges).T / self.sizes
         self.weights = 1.0 / prediction.record.units(noise).ravel()
         self.observed = prediction.record.observed.ravel()
         self.noise, own = noise, np.arange(self.sizes.size) < len(names)
@@ -139,18 +147,23 @@ class Problem:
             raise InvalidValue("the motion hangs too sensitively on where it begins")
         return np.vstack([rows @ self.slopes(unknowns), np.diag(self.held)])
 
-    def solve(self, start: Array, most: int = MOST) -> Any:
-        """``scipy.optimize.least_squares`` from `start`."""
+    def of(self, prediction: Prediction) -> Problem:
+        """The same problem by a prediction that stands elsewhere."""
+        found = copy.copy(self)
+        found.prediction, found.last = prediction, None
+        return found
+
+    def solve(self, start: Array, most: int = MOST, gain: float = GAIN) -> Found:
+        """The best fit from `start`, in so many steps at `most`, until a step lowers chi^2 by no more than `gain`
+        times the noise's variance."""
         if not np.all(np.isfinite(self.residuals(start))):
             raise InvalidValue("no motion like the record's was found to start from")
-        with np.errstate(all="ignore"):  # of the trust region, along what is not seen
-            return least_squares(
-                self.residuals,
-                start,
-                jac=self.jacobian,
-                x_scale="jac",
-                max_nfev=most,
-                xtol=1e-10,
-                ftol=GAIN / self.freedom,
-                gtol=None,
-            )
+        variance = 1.0 / self.freedom
+        return descend(
+            self.residuals,
+            self.jacobian,
+            start,
+            self.bounds,
+            most=most,
+            enough=lambda chi2: gain * chi2 * variance,
+        )

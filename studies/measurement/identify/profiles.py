@@ -1,15 +1,38 @@
-"""Profile likelihood: what a fit becomes with one parameter held."""
+"""Profile likelihood: what a fit becomes with one parameter held, and how far it may be moved.
+
+With p held at a value all others are fitted again; the rise of chi^2 over the noise's variance is r^2.  The 90 %
+interval ends where r is the `reach`, 1.645 or Student's t for it.  A refit begins at the nearest one, and the
+value moves on by the secant of r.  A refit that has not settled is not believed: a shorter step follows.
+"""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from beam import Refusal
-from studies.measurement.identify.fit import Fit
-from studies.measurement.identify.problem import Problem
+from contact import ContactError
+from studies.measurement.identify.predictions import Prediction
+from studies.measurement.identify.problem import SETTLED, Problem
 from studies.physics.parameters import with_values
+
+Array = NDArray[np.float64]
+
+REFITS, FEW, NEAR = 16, 30, 0.15
+"""Most refits to a side, and the steps of each; distance of the last r from the reach, as a part of it."""
+
+GROW, SHRINK, WILD = 4.0, 0.3, 1e4
+"""Longest step over the last one; what follows a step that fails; rise of chi^2 where a refit does not begin."""
+
+FAR = 0.25
+"""Part of the reach from which on a walk that comes to a halt is continued by a line."""
+
+BENT = 0.2
+"""A parameter has a profile where chi^2 a reach away differs by this part from what (J^T J)^-1 says."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -27,29 +50,139 @@ class Profile:
     depth: float
 
 
-def profile(found: Fit, name: str, other: str, *, points: int = 9, reach: float = 3.0) -> list[Profile]:
-    """The profile likelihood of `name`, `reach` standard errors to both sides."""
-    problem, i, variance = found.problem, found.names.index(name), (found.noise / found.problem.noise) ** 2
-    best, rows = np.sum(problem.residuals(found.unknowns) ** 2), list[Profile]()
-    others = tuple(one for one in problem.names if one != name)
-    for side in np.linspace(-reach, reach, points):
-        unknowns = found.unknowns.copy()
-        step = side * found.covariance[:, i] / found.errors[i]
-        unknowns[problem.named] += step / problem.slopes(found.unknowns)[problem.named]
-        values = problem.values(unknowns)
+@dataclass(frozen=True, eq=False)
+class Point:
+    """A parameter held `away` standard errors from the best: the `rise` of chi^2 in the noise's variance, the
+    `values` of all unknowns, their change with one more standard error (`along`), and the prediction there."""
+
+    away: float
+    rise: float
+    values: Array
+    along: Array
+    prediction: Prediction
+
+    @property
+    def r(self) -> float:
+        """The root of the rise."""
+        return math.sqrt(max(self.rise, 0.0))
+
+
+class Walk:
+    """Steps along one parameter, `name`, of a `problem` solved by `unknowns`.
+
+    `error` is its standard error by (J^T J)^-1, `variance` that of the noise in the problem's units.
+    """
+
+    def __init__(self, problem: Problem, unknowns: Array, error: float, variance: float, name: str) -> None:
+        self.problem, self.name, self.variance, self.error = problem, name, variance, error
+        self.i, self.chi2 = problem.names.index(name), float(np.sum(problem.residuals(unknowns) ** 2))
+        self.best = self._point(0.0, 0.0, problem.values(unknowns), problem.prediction)
+
+    def _point(self, away: float, rise: float, values: Array, prediction: Prediction) -> Point:
+        """A point with the direction in which chi^2 rises least as the parameter moves on."""
+        problem = self.problem.of(prediction)
+        unknowns = problem.unknowns_of(values)
+        rows = np.linalg.qr(problem.jacobian(unknowns))[1] @ np.linalg.inv(problem.slopes(unknowns))
+        sizes = np.linalg.norm(rows, axis=0)
+        others = np.delete(rows / sizes, self.i, axis=1)
+        follow = np.linalg.lstsq(others, -rows[:, self.i], rcond=None)[0] / np.delete(sizes, self.i)
+        each = values[self.i] / self.best.values[self.i] if away and self._log else 1.0
+        return Point(away, rise, values, np.insert(follow, self.i, 1.0) * self.error * each, prediction)
+
+    @property
+    def _log(self) -> bool:
+        return bool(self.problem.log[self.i])
+
+    def moved(self, point: Point, step: float, last: Point | None = None) -> Array:
+        """All values so many standard errors on: along a point's direction, on the parabola through the last;
+        logarithms where they are fitted."""
+        found, log = point.values + step * point.along, self.problem.log
+        if last is not None:
+            back = last.away - point.away
+            found += (last.values - point.values - back * point.along) * (step / back) ** 2
+            found[self.i] = point.values[self.i] + step * point.along[self.i]
+        found[log] = point.values[log] * np.exp(found[log] / point.values[log] - 1.0)
+        return found
+
+    def rise_of(self, values: Array, prediction: Prediction) -> float:
+        """The rise of chi^2 at these values; not a number where there is no motion."""
+        problem = self.problem.of(prediction)
+        return (
+            float(np.sum(problem.residuals(problem.unknowns_of(values)) ** 2)) - self.chi2
+        ) / self.variance
+
+    def bent(self, reach: float) -> bool:
+        """Whether chi^2 is not the parabola that (J^T J)^-1 says."""
+        rises = [self.rise_of(self.moved(self.best, way), self.best.prediction) for way in (-reach, reach)]
+        return not all(abs(rise / reach**2 - 1.0) < BENT for rise in rises)
+
+    def held(self, point: Point, step: float, last: Point | None) -> Point | None:
+        """The fit with the parameter a step beyond a point; None if it does not settle."""
+        values, problem = self.moved(point, step, last), self.problem
+        prediction, value = point.prediction.again(), float(values[self.i])
+        if not self.rise_of(values, prediction) < WILD:
+            return None
+        others = tuple(one for one in problem.names if one != self.name)
         try:
-            at = with_values(found.oscillator, {name: float(values[i])})
-            fewer = Problem(problem.prediction, at, others, problem.noise)
-            held = fewer.solve(fewer.unknowns_of(np.delete(values, i)))
-        except Refusal:
-            continue
-        rows.append(
-            Profile(
-                parameter=name,
-                value=float(values[i]),
-                depth=float(2.0 * held.cost - best) / variance,
-                other=other,
-                other_value=float(fewer.values(held.x)[fewer.named][others.index(other)]),
+            at = with_values(problem.oscillator, {self.name: value})
+            fewer = Problem(prediction, at, others, problem.noise)
+            found = fewer.solve(fewer.unknowns_of(np.delete(values, self.i)), FEW, 0.1 * SETTLED)
+            if found.left > self.variance * SETTLED:
+                return None
+            rise = (found.chi2 - self.chi2) / self.variance
+            return self._point(
+                point.away + step, rise, np.insert(fewer.values(found.x), self.i, value), prediction
             )
+        except (ContactError, Refusal):
+            return None
+
+    def side(self, reach: float) -> tuple[list[Point], float]:
+        """Points from the best outwards to the side of the sign of `reach`, and where the interval ends."""
+        low, last, high, points = self.best, None, None, list[Point]()
+        step, most = reach, abs(reach)
+        for _ in range(REFITS):
+            point = self.held(low, step, last)
+            if point is None:
+                step *= SHRINK
+                continue
+            points.append(point)
+            if abs(point.r / most - 1.0) < NEAR:
+                return points, self._end(low, point, most)
+            if point.r > most:
+                high = point
+            else:
+                slope = (point.r - low.r) / abs(step)
+                step = math.copysign(min((most - point.r) / max(slope, 1e-9), GROW * abs(step)), reach)
+                low, last = point, low
+            if high is not None:
+                part = (most - low.r) / (high.r - low.r)
+                step = (high.away - low.away) * min(max(part, 0.1), 0.9)
+        if high is None and last is not None and low.r > FAR * most and low.r > last.r:
+            low, high = last, low  # the walk has come to a halt: the line through its last two points
+        return points, self._edge(reach) if high is None else self._end(low, high, most)
+
+    def _end(self, low: Point, high: Point, reach: float) -> float:
+        """Where r is the reach, by the line through two points."""
+        ends = low.values[self.i], high.values[self.i]
+        return float(ends[0] + (ends[1] - ends[0]) * (reach - low.r) / (high.r - low.r))
+
+    def _edge(self, reach: float) -> float:
+        """Where the parameter ends; no r within the physical range is as large as the reach."""
+        if self.name == "restitution":
+            return 0.0 if reach < 0.0 else 1.0
+        return math.inf if reach > 0.0 else 0.0
+
+
+def rows_of(walk: Walk, points: Sequence[Point], other: str) -> list[Profile]:
+    """The points of a walk, the parameter rising."""
+    k = walk.problem.names.index(other)
+    return [
+        Profile(
+            parameter=walk.name,
+            value=float(point.values[walk.i]),
+            other=other,
+            other_value=float(point.values[k]),
+            depth=point.rise,
         )
-    return rows
+        for point in sorted([walk.best, *points], key=lambda point: point.away)
+    ]
