@@ -28,6 +28,9 @@ STICKING, STRAY, SURE, ALIKE, MANY = 6.0, 12.0, 8.0, 0.025, 6000
 outlier (corners: 8), of an estimate that is no chance. Part that an orbit leaves (noise of 1 %: 0.016); rows
 that suffice to see it."""
 MISREAD = {1.0: "", 1e-3: "in kHz", 2.0 * math.pi: "in rad/s", 60.0: "in 1/min", 2.0: "2 f", 0.5: "f/2"}
+MISREAD |= {
+    10.0**n: f"right if time_s is in {unit}: divide it by 1e{n}" for n, unit in ((3, "ms"), (6, "µs"))
+}
 """What a given drive may be, by its ratio to that of the record."""
 
 

@@ -21,13 +21,14 @@ from numpy.typing import NDArray
 from scipy import stats
 from scipy.special import expit, logit
 
-from beam import InvalidValue, Refusal
+from beam import Refusal
 from contact import ContactError, ImpactOscillator
 from studies import letter
 from studies.measurement.identify.displacement import SENSOR
 from studies.measurement.identify.predictions import Prediction
 from studies.measurement.identify.problem import MOST, Problem
-from studies.measurement.identify.records import READ_OUT, Record
+from studies.measurement.identify.records import READ_OUT, NoAnswer, Record
+from studies.measurement.identify.soundness import sound
 from studies.measurement.identify.starts import predictions_of
 from studies.physics.parameters import parameters_of, require_names
 
@@ -134,10 +135,12 @@ def fit(
     """Fit the named parameters; the others keep the values of `oscillator`, driven as the record was.
 
     `noise` is the standard deviation of the read-out where it is known [m], or of the excesses of a table;
-    `free` are the numbers of the sensor that are fitted to a displacement.  InvalidValue is raised, in one
+    `free` are the numbers of the sensor that are fitted to a displacement.  NoAnswer is raised, in one
     sentence, for a record that cannot determine them.
     """
     require_names(names, oscillator)
+    if record.kind == "displacement":
+        record, oscillator = sound(record, oscillator)
     known = noise is not None or len(record.columns) == 4
     unit = noise or (letter.AMPLITUDE_STABILITY if record.kind == "transitions" else READ_OUT)
     starts = predictions_of(record, oscillator, tuple(names), free)
@@ -149,7 +152,7 @@ def _best(problems: Sequence[Problem], known: bool) -> tuple[Problem, Any]:
     """The problem that is solved best, and its solution: all are begun, the best that differ are finished."""
     rows = problems[0].observed.size
     if rows < problems[0].unknowns + (not known):
-        raise InvalidValue(
+        raise NoAnswer(
             f"the record has {rows} numbers, too short for {problems[0].unknowns} unknowns and their errors"
         )
     failure, begun = None, list[tuple[float, int, Array]]()
@@ -172,7 +175,7 @@ def _best(problems: Sequence[Problem], known: bool) -> tuple[Problem, Any]:
         except (ContactError, Refusal) as error:
             failure = failure or error
     if not ends:
-        raise failure or InvalidValue("no motion like that of the record was found to start from")
+        raise NoAnswer(f"no motion like the record's was found to start from: {failure}")
     return min(ends, key=lambda end: float(end[1].cost))
 
 
@@ -185,7 +188,7 @@ def _part(problem: Problem, number: int) -> Problem:
 
 
 def _judged(problem: Problem, found: Any, oscillator: ImpactOscillator, known: bool) -> Fit:
-    """The fit that a solution is; InvalidValue if the record does not determine it."""
+    """The fit that a solution is; NoAnswer if the record does not determine it."""
     prediction, rows = problem.prediction, problem.observed.size
     spread = 1.0 if known else float(np.sqrt(2.0 * found.cost / problem.freedom))
     names = problem.names + prediction.sensor
@@ -195,13 +198,13 @@ def _judged(problem: Problem, found: Any, oscillator: ImpactOscillator, known: b
     left, singular, axes = np.linalg.svd(found.jac / lengths, full_matrices=False)
     gain = float(np.sum((left.T @ found.fun) ** 2)) / spread**2
     if gain > SETTLED:
-        raise InvalidValue(f"the fit has not settled after {MOST} steps: chi^2 would still fall by {gain:.2g}")
+        raise NoAnswer(f"the fit has not settled after {MOST} steps: chi^2 would still fall by {gain:.2g}")
     slopes, values = problem.slopes(found.x), problem.values(found.x)
     sizes = np.where(problem.log, LOST * np.abs(values), np.maximum(np.abs(values), problem.sizes))
     axes = axes / lengths @ slopes.T
     if not singular[-1] > SINGULAR * singular[0]:
         blind = _blind((axes / sizes)[:, own], names)
-        raise InvalidValue(f"the record cannot {blind}: fit fewer parameters or another record")
+        raise NoAnswer(f"the record cannot {blind}: fit fewer parameters or another record")
     covariance = (axes.T / singular**2 @ axes * spread**2)[np.ix_(own, own)]
     before = parameters_of(oscillator)
     result = Fit(
@@ -224,7 +227,7 @@ def _judged(problem: Problem, found: Any, oscillator: ImpactOscillator, known: b
     if not result.too_small and np.any(share > 1.0):  # else `report` says so
         worst, blind = names[int(np.argmax(share))], _blind((axes / sizes)[:, own], names)
         blind = blind if worst in blind.split() else f"determine {worst}"
-        raise InvalidValue(f"the record cannot {blind}: the standard error of {worst} is above its value")
+        raise NoAnswer(f"the record cannot {blind}: the standard error of {worst} is above its value")
     return result
 
 

@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
-from beam import InvalidValue, Refusal
+from beam import Refusal
 from contact import ContactError, ImpactOscillator
 from studies.measurement.identify.predictions import Prediction
+from studies.measurement.identify.records import NoAnswer
 from studies.physics.parameters import parameters_of, with_values
 
 Array = NDArray[np.float64]
@@ -133,16 +134,16 @@ class Problem:
         return np.concatenate([off, (unknowns - self.middle) * self.held])
 
     def jacobian(self, unknowns: Array) -> Array:
-        """Shape (rows + unknowns, unknowns); InvalidValue if it is not finite."""
+        """Shape (rows + unknowns, unknowns); NoAnswer if it is not finite."""
         rows = self.prediction.jacobian(*self.at(unknowns), self.names) * self.weights[:, None]
         if not np.all(np.isfinite(rows)):
-            raise InvalidValue("the motion hangs too sensitively on where it begins")
+            raise NoAnswer("the motion hangs too sensitively on where it begins")
         return np.vstack([rows @ self.slopes(unknowns), np.diag(self.held)])
 
     def solve(self, start: Array, most: int = MOST) -> Any:
         """``scipy.optimize.least_squares`` from `start`."""
         if not np.all(np.isfinite(self.residuals(start))):
-            raise InvalidValue("no motion like the record's was found to start from")
+            raise NoAnswer("no motion like the record's was found to start from")
         with np.errstate(all="ignore"):  # of the trust region, along what is not seen
             return least_squares(
                 self.residuals,
