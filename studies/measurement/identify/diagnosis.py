@@ -201,6 +201,19 @@ def filtered(times: Array, values: Array, predicted: Array, pace: float) -> list
     return [f"lines fall below the predicted ones as by a low-pass near {corners[best]:.0f} Hz"]
 
 
+def wanders(times: Array, values: Array, residuals: Array, frequency: float) -> list[str]:
+    """Whether residuals fade or the record does not repeat: a transient or chaos."""
+    parts = np.array_split(np.arange(times.size), max(1, min(8, int(frequency * (times[-1] - times[0])))))
+    size = np.array([residuals[part].std() for part in parts])
+    quiet = int(np.argmin(size > 3.0 * np.median(size)))
+    if len(parts) > 3 and quiet > 0 and np.all(size[quiet:] < 3.0 * np.median(size)):
+        return [f"the residuals fade within the first {times[parts[quiet][0]] - times[0]:.2g} s: a transient"]
+    left = repetition(times, values, frequency)
+    if left.min() > max(ALIKE * values.std(), 3.0 * off_neighbours(times, values)[1]):
+        return [f"the record does not repeat within {left.size} drive periods"]
+    return []
+
+
 def contradictions(times: Array, values: Array, residuals: Array, frequency: float, period: int) -> list[str]:
     """What residuals show that are no noise; the drive is at `frequency` [Hz], a `period` 0 is unknown."""
     if period == 0:
@@ -217,12 +230,4 @@ def contradictions(times: Array, values: Array, residuals: Array, frequency: flo
         found += [f"the amplitude changes by {100.0 * change:.2g} % through the record"]
     if found := found or filtered(times, values, predicted, pace):
         return found
-    parts = np.array_split(np.arange(t.size), max(1, min(8, int(pace * (times[-1] - times[0])))))
-    size = np.array([residuals[part].std() for part in parts])
-    quiet = int(np.argmin(size > 3.0 * np.median(size)))
-    if len(parts) > 3 and quiet > 0 and np.all(size[quiet:] < 3.0 * np.median(size)):
-        return [f"the residuals fade within the first {times[parts[quiet][0]] - times[0]:.2g} s: a transient"]
-    left = repetition(times, values, frequency)
-    if left.min() > max(ALIKE * values.std(), 3.0 * noise):
-        return [f"the record does not repeat within {left.size} drive periods"]
-    return ["the model is too small for the record"]
+    return wanders(times, values, residuals, frequency) or ["the model is too small for the record"]

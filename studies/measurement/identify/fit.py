@@ -13,7 +13,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from contextlib import suppress
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -24,13 +25,15 @@ from scipy.special import expit, logit
 from beam import Refusal
 from contact import ContactError, ImpactOscillator
 from studies import letter
+from studies.measurement.identify.diagnosis import wanders
 from studies.measurement.identify.displacement import SENSOR
+from studies.measurement.identify.linear import Linear
 from studies.measurement.identify.predictions import Prediction
 from studies.measurement.identify.problem import MOST, Problem
 from studies.measurement.identify.records import READ_OUT, NoAnswer, Record
 from studies.measurement.identify.soundness import sound
-from studies.measurement.identify.starts import predictions_of
-from studies.physics.parameters import parameters_of, require_names
+from studies.measurement.identify.starts import predictions_of, unsteady_starts
+from studies.physics.parameters import parameters_of, require_names, with_values
 
 Array = NDArray[np.float64]
 
@@ -143,9 +146,62 @@ def fit(
         record, oscillator = sound(record, oscillator)
     known = noise is not None or len(record.columns) == 4
     unit = noise or (letter.AMPLITUDE_STABILITY if record.kind == "transitions" else READ_OUT)
-    starts = predictions_of(record, oscillator, tuple(names), free)
-    problem, found = _best([Problem(one, begun, tuple(names), unit) for one, begun in starts], known)
-    return _judged(problem, found, oscillator, known)
+    if record.kind != "displacement":
+        starts = predictions_of(record, oscillator, tuple(names), free)
+        return _judged(
+            *_best([Problem(one, at, tuple(names), unit) for one, at in starts], known), oscillator, known
+        )
+    return _displacement(record, oscillator, tuple(names), free, unit, known)
+
+
+def _displacement(
+    record: Record,
+    oscillator: ImpactOscillator,
+    names: tuple[str, ...],
+    free: Sequence[str],
+    unit: float,
+    known: bool,
+) -> Fit:
+    """The best fit of a displacement: of a linear motion, of one that repeats, or of one that does not."""
+
+    def solved(starts: Sequence[tuple[Prediction, ImpactOscillator]]) -> Fit:
+        return _judged(
+            *_best([Problem(one, at, names, unit) for one, at in starts], known), oscillator, known
+        )
+
+    linear, found, failure = Linear(record), None, None
+    try:
+        starts = [] if linear.likely else predictions_of(record, oscillator, names, free)
+        found = solved(starts) if starts else _without_impacts(linear, oscillator, names, free, unit, known)
+        if not found.too_small:
+            return found
+    except NoAnswer as error:
+        failure = error
+    times, x = record.rows.T
+    residuals = found.residuals[:, 0] if found else x - x.mean()
+    if words := wanders(times, x, residuals, float(linear.frequency)):
+        with suppress(NoAnswer):
+            other = solved(unsteady_starts(record, oscillator, names, free))
+            if not other.too_small or not found:
+                note = f"{words[0]}: the fit is that of a transient or a chaotic motion"
+                return replace(other, record=replace(other.record, notes=(*record.notes, note)))
+    if failure:
+        raise failure
+    return found
+
+
+def _without_impacts(
+    linear: Linear,
+    oscillator: ImpactOscillator,
+    names: Sequence[str],
+    free: Sequence[str],
+    unit: float,
+    known: bool,
+) -> Fit:
+    """The fit of a linear motion, the stop of `oscillator` left where it was."""
+    prediction, begun, own = linear.start(oscillator, names, free)
+    found = _judged(*_best([Problem(prediction, begun, own, unit)], known), oscillator, known)
+    return replace(found, oscillator=with_values(found.oscillator, {"gap": oscillator.stop.gap}))
 
 
 def _best(problems: Sequence[Problem], known: bool) -> tuple[Problem, Any]:

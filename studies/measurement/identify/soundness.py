@@ -62,7 +62,7 @@ def require_strobe_units(record: Record, oscillator: ImpactOscillator) -> None:
     if farthest > BEYOND * gap:
         words = unit_of(1e3 if farthest < 3e4 * gap else 1e6, 1.0, "x_m")
         raise InvalidValue(f"x_m reaches {farthest:.4g} m, where the gap is {gap:.4g} m: {words}")
-    given, least = record.amplitude or 0.0, oscillator.grazing_amplitude
+    given, least = record.amplitude or 0.0, oscillator.grazing_amplitude()
     if given > APART * least or 0.0 < given < least / APART:
         raise InvalidValue(
             f"the given amplitude is {given:.4g} m, but the tip meets the stop from {least:.4g} m on: "

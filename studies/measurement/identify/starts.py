@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +22,7 @@ from scipy.optimize import least_squares
 from beam import Refusal
 from contact import ContactError, ImpactOscillator, SingleImpactOrbit, State, simulate
 from studies.measurement.identify.displacement import SENSOR, Displacement
-from studies.measurement.identify.kicks import Kicked, kicked_motions
+from studies.measurement.identify.kicks import Kicked, kicked_motions, poles
 from studies.measurement.identify.predictions import Prediction, Strobes, Transitions, family_of
 from studies.measurement.identify.records import NoAnswer, Record
 from studies.measurement.identify.soundness import require_strobe_units, require_units
@@ -57,6 +58,9 @@ FACTORS = (0.1, 10.0, 0.3, 3.0, 0.03, 30.0)
 RESTITUTIONS = (0.1, 0.3, 0.6, 0.9)
 """Restitutions that are tried beside those of the record and the scene."""
 
+BELOW, SHORT, EARLY = 0.98, 0.3, 3.0
+"""Gaps below which a row is off the stop; drive periods that show a state at least, that are fitted first."""
+
 LOOKED = 200
 """Times of an orbit at which the tip may be farthest from the stop, where its state begins."""
 
@@ -69,6 +73,7 @@ def predictions_of(
 ) -> Sequence[tuple[Prediction, ImpactOscillator]]:
     """Predictions of the rows and the starts of their fits, the best first; NoAnswer for a poor record.
 
+    There are none of a displacement without impacts.
     `free` are the numbers of the sensor that are fitted to a displacement.
     """
     if record.kind == "transitions":
@@ -165,7 +170,7 @@ def _displacement(
     times, x = record.rows.T
     motions = kicked_motions(times, x, oscillator, record.frequency)
     if motions[0].without - motions[0].cost < SEEN:
-        raise NoAnswer("there is no impact in the record")
+        return []
     likely = [one for one in motions if one.reading()["gap"] > 0.0 and one.steady != 0.0]
     if not likely:
         raise NoAnswer("the record repeats, but not as a motion with impacts at one gap")
@@ -179,6 +184,38 @@ def _displacement(
         for i, motion in enumerate(likely)
         for one in _starts(record, motion, oscillator, names, free, few=i > 0)
     ]
+
+
+def unsteady_starts(
+    record: Record, oscillator: ImpactOscillator, names: Sequence[str], free: Sequence[str]
+) -> list[tuple[Displacement, ImpactOscillator]]:
+    """Starts of a motion that does not repeat, at the first row off the stop, from kicked motions like it.
+
+    Its state there is that of the steady motion and of mode 1, as the rows until the first impact show it.
+    """
+    times, x, found = *record.rows.T, list[tuple[Displacement, ImpactOscillator]]()
+    motions = kicked_motions(times, x, oscillator, record.frequency)
+    likely = [one for one in motions if one.reading()["gap"] > 0.0 and one.steady != 0.0]
+    pairs = [pair for one in likely[:TRIED] for pair in _starts(record, one, oscillator, names, free, True)]
+    for steady, at in pairs:
+        sensor, model, w = steady.reading(steady.extra), at.model, at.driven.angular_frequency
+        tip = (x - sensor["offset"]) / sensor["scale"]
+        below = tip < BELOW * at.stop.gap
+        begin = int(np.argmax(below))
+        least = int(np.searchsorted(times, times[begin] + SHORT * at.period))
+        end = max(least, begin + int(np.argmin(np.append(below[begin:], False))))
+        turn = at.driven.amplitude * np.exp(1j * (w * times[begin:end] + sensor["phase"]))
+        pole = poles(at)[model.leading_mode]
+        wave = np.exp(pole * (times[begin:end] - times[begin]))
+        off = tip[begin:end] - (at.tip_response() * turn).imag
+        a, b = np.linalg.lstsq(np.array([wave.real, -wave.imag]).T, off, rcond=None)[0]
+        own = np.eye(model.n_modes)[model.leading_mode] / model.phi * complex(a, b)
+        share = at.steady_response() * turn[0]
+        state = np.append(share.imag + own.real, (1j * w * share).imag + (pole * own).real)
+        rest = replace(record, rows=record.rows[begin:])
+        first = int(np.searchsorted(rest.rows[:, 0], times[begin] + EARLY * at.period))
+        found.append((Displacement(rest, at, state, sensor, free, first=first), at))
+    return found
 
 
 def _starts(
