@@ -221,12 +221,16 @@ def test_the_command_line_takes_a_record_and_leaves_a_scene(run_study, tmp_path,
 
 
 def test_a_gap_that_no_scene_has_is_refused_before_any_table(run_study, tmp_path, made):
-    """Micrometres below x_m."""
+    """Micrometres below x_m, where the gap of the scene is near the true one or far from it."""
     record = synthetic("displacement", made["one_mode"], seed=2, periods=10)
     big = replace(record, rows=record.rows * [1.0, 1e6], amplitude=None)
     (tmp_path / "a.csv").write_text(big.text())
-    ran = run_study("identify", str(tmp_path / "a.csv"), "--fit", "gap", "tau", "amplitude")
-    assert ran.code == 2 and re.fullmatch(r".*stop\.gap_m must be .*\n", ran.err) and not ran.folder.exists()
+    for more, said in (
+        ((), "micrometres: divide by 1e6"),
+        (("--set", "stop.gap_m=0.02"), r"stop\.gap_m must be"),
+    ):
+        ran = run_study("identify", str(tmp_path / "a.csv"), "--fit", "gap", "tau", "amplitude", *more)
+        assert ran.code == 2 and re.fullmatch(f".*{said}.*\n", ran.err) and not ran.folder.exists(), ran.err
 
 
 WRONG = {

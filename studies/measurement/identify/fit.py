@@ -181,7 +181,7 @@ def _displacement(
     residuals = found.residuals[:, 0] if found else x - x.mean()
     if words := wanders(times, x, residuals, float(linear.frequency)):
         with suppress(NoAnswer):
-            other = solved(unsteady_starts(record, oscillator, names, free))
+            other = solved(unsteady_starts(linear, oscillator, names, free))
             if not other.too_small or not found:
                 note = f"{words[0]}: the fit is that of a transient or a chaotic motion"
                 return replace(other, record=replace(other.record, notes=(*record.notes, note)))
@@ -231,6 +231,8 @@ def _best(problems: Sequence[Problem], known: bool) -> tuple[Problem, Any]:
         except (ContactError, Refusal) as error:
             failure = failure or error
     if not ends:
+        if isinstance(failure, NoAnswer):
+            raise failure
         raise NoAnswer(f"no motion like the record's was found to start from: {failure}")
     return min(ends, key=lambda end: float(end[1].cost))
 

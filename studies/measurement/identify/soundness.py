@@ -38,8 +38,9 @@ def sound(record: Record, oscillator: ImpactOscillator) -> tuple[Record, ImpactO
         dense = float(rows / ((times[-1] - times[0]) * (record.frequency or oscillator.driven.frequency)))
         step = max(1, min(-(-rows // MOST), int(dense / DENSE)))
         record = replace(record, rows=record.rows[::step][:MOST])
-        words = f"each {step}th row" if step > 1 else "each row"
-        note = f"{words} of {rows}, up to {record.rows[-1, 0]:.6g} s, is fitted: {len(record.rows)} rows"
+        note = (
+            f"1 row in {step} of {rows} is fitted, up to {record.rows[-1, 0]:.6g} s: {len(record.rows)} rows"
+        )
         record = replace(record, notes=(*record.notes, note))
     return record, oscillator
 

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
@@ -23,6 +24,7 @@ from beam import Refusal
 from contact import ContactError, ImpactOscillator, SingleImpactOrbit, State, simulate
 from studies.measurement.identify.displacement import SENSOR, Displacement
 from studies.measurement.identify.kicks import Kicked, kicked_motions, poles
+from studies.measurement.identify.linear import Linear
 from studies.measurement.identify.predictions import Prediction, Strobes, Transitions, family_of
 from studies.measurement.identify.records import NoAnswer, Record
 from studies.measurement.identify.soundness import require_strobe_units, require_units
@@ -187,16 +189,25 @@ def _displacement(
 
 
 def unsteady_starts(
-    record: Record, oscillator: ImpactOscillator, names: Sequence[str], free: Sequence[str]
+    linear: Linear, oscillator: ImpactOscillator, names: Sequence[str], free: Sequence[str]
 ) -> list[tuple[Displacement, ImpactOscillator]]:
-    """Starts of a motion that does not repeat, at the first row off the stop, from kicked motions like it.
+    """Starts of a motion that does not repeat, at the first row off the stop, from kicked and linear ones.
 
     Its state there is that of the steady motion and of mode 1, as the rows until the first impact show it.
     """
+    record = linear.record
     times, x, found = *record.rows.T, list[tuple[Displacement, ImpactOscillator]]()
     motions = kicked_motions(times, x, oscillator, record.frequency)
     likely = [one for one in motions if one.reading()["gap"] > 0.0 and one.steady != 0.0]
     pairs = [pair for one in likely[:TRIED] for pair in _starts(record, one, oscillator, names, free, True)]
+    known = {
+        n: one.value for n, one in parameters_of(oscillator).items() if n in ("free_period", "decay_rate")
+    }
+    pairs += [(steady, with_values(at, known)) for steady, at in pairs]
+    with suppress(NoAnswer):
+        steady, at, _ = linear.start(oscillator, names, free)
+        gap = float(np.max(x)) - linear.offset if "gap" in names else oscillator.stop.gap
+        pairs.append((steady, with_values(at, {"gap": gap})))
     for steady, at in pairs:
         sensor, model, w = steady.reading(steady.extra), at.model, at.driven.angular_frequency
         tip = (x - sensor["offset"]) / sensor["scale"]
