@@ -227,7 +227,7 @@ def test_a_gap_that_no_scene_has_is_refused_before_any_table(run_study, tmp_path
     (tmp_path / "a.csv").write_text(big.text())
     for more, said in (
         ((), "micrometres: divide by 1e6"),
-        (("--set", "stop.gap_m=0.02"), r"stop\.gap_m must be"),
+        (("--set", "stop.gap_m=0.009"), r"stop\.gap_m must be"),
     ):
         ran = run_study("identify", str(tmp_path / "a.csv"), "--fit", "gap", "tau", "amplitude", *more)
         assert ran.code == 2 and re.fullmatch(f".*{said}.*\n", ran.err) and not ran.folder.exists(), ran.err

@@ -59,7 +59,7 @@ import numpy as np
 from beam import InvalidValue, Refusal
 from contact import ImpactOscillator
 from studies.measurement.identify import figure
-from studies.measurement.identify.diagnosis import contradictions
+from studies.measurement.identify.diagnosis import contradictions, wanders
 from studies.measurement.identify.displacement import SENSOR
 from studies.measurement.identify.estimates import estimates_of, report
 from studies.measurement.identify.fit import Fit
@@ -250,8 +250,10 @@ def reason(one: Fit) -> str:
     if one.record.kind != "displacement":
         return "the model is too small for the record"
     (times, values), frequency = one.record.rows.T, one.oscillator.driven.frequency
-    period = int(one.problem.prediction.period)
-    return "; ".join(contradictions(times, values, one.residuals[:, 0], frequency, period)[:2])
+    residuals, period = one.residuals[:, 0], int(one.problem.prediction.period)
+    found = wanders(times, values, residuals, frequency)
+    found += contradictions(times, values, residuals, frequency, period)
+    return "; ".join([*dict.fromkeys(found)][:2])
 
 
 def answered(one: Fit) -> Fit:

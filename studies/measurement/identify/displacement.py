@@ -51,8 +51,9 @@ CLOSED, STEPS = 1e-10, 12
 FAR = 1.0
 """A step of Newton's method that leads nowhere, in gaps at the tip."""
 
-FEW = 1500
-"""Rows with which a search begins."""
+FEW, GROWTH = 1500, 1.2
+"""Rows with which a search begins; factor by which the rows of a motion that does not repeat grow: in chaos a
+larger one leads to local optima."""
 
 SENSOR: Mapping[str, float] = {"phase": 0.0, "offset": 0.0, "scale": 1.0}
 """The numbers of a sensor, each with its value where it is not fitted: the phase of the drive at time zero
@@ -101,7 +102,7 @@ class Displacement(Prediction):
         rows = len(self.times)
         if self.period:
             return [self.part(slice(None, None, -(-rows // FEW))), self]
-        counts = [self.first * 2**k for k in range(64) if 0 < self.first * 2**k < 0.75 * rows]
+        counts = [int(self.first * GROWTH**k) for k in range(64) if 0 < self.first * GROWTH**k < rows]
         return [*(self.part(slice(count)) for count in counts), self]
 
     def part(self, rows: slice) -> Displacement:
@@ -134,7 +135,9 @@ class Displacement(Prediction):
         end = begun + self.period * oscillator.period
         for _ in range(STEPS):
             at = State(displacement=state[:n], velocity=state[n:], time=begun)
-            found = motion_derivatives(oscillator, at, periods=_periods(end, oscillator), times=np.array([end]))
+            found = motion_derivatives(
+                oscillator, at, periods=_periods(end, oscillator), times=np.array([end])
+            )
             off = np.append(found.run.displacement[0], found.run.velocity[0]) - state
             step = np.linalg.solve(np.eye(2 * n) - found.states[0], off)
             if not np.abs(step / self.scale).max() < FAR:

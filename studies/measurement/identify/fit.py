@@ -29,10 +29,11 @@ from studies.measurement.identify.diagnosis import wanders
 from studies.measurement.identify.displacement import SENSOR
 from studies.measurement.identify.linear import Linear
 from studies.measurement.identify.predictions import Prediction
-from studies.measurement.identify.problem import MOST, Problem
+from studies.measurement.identify.problem import MOST, Problem, chance_of
 from studies.measurement.identify.records import READ_OUT, NoAnswer, Record
 from studies.measurement.identify.soundness import sound
-from studies.measurement.identify.starts import predictions_of, unsteady_starts
+from studies.measurement.identify.starts import predictions_of
+from studies.measurement.identify.unsteady import unsteady_starts
 from studies.physics.parameters import parameters_of, require_names, with_values
 
 Array = NDArray[np.float64]
@@ -46,14 +47,15 @@ SINGULAR = 1e-8
 TOO_SMALL = 1e-3
 """Probability of such residuals from noise alone, below which the model is called too small."""
 
-LAGS = 10
-"""Number of lags in the autocorrelation of residuals."""
-
 LEASH = 1.0
 """Prior of the parameters while the beginning of a record is fitted, which need not determine all of them."""
 
-EARLY, FINISHED, SAME = 40, 3, 1e-4
-"""Steps from each start; starts that are fitted to the end; relative difference of chi^2 of two that are one."""
+EARLY, FINISHED, SAME, ASTRAY = 40, 3, 1e-4, 9.0
+"""Steps from each start; starts that are fitted to the end; relative difference of chi^2 of two that are one;
+growth of chi^2 by row at which the fit of more and more rows is given up."""
+
+SHORT = 20.0
+"""Drive periods of a motion that are fitted where more are not: chaos forgets its start."""
 
 SETTLED = 0.1
 """Fall of chi^2 that may be left to a further step, in units of the noise's variance: a third of an error."""
@@ -179,11 +181,15 @@ def _displacement(
         failure = error
     times, x = record.rows.T
     residuals = found.residuals[:, 0] if found else x - x.mean()
-    if words := wanders(times, x, residuals, float(linear.frequency)):
+    words = wanders(times, x, residuals, float(linear.frequency))
+    early = int(np.searchsorted(times, times[0] + SHORT / float(linear.frequency)))
+    for size in dict.fromkeys([len(x), early] if words else []):
+        linear.record = replace(record, rows=record.rows[:size])
         with suppress(NoAnswer):
             other = solved(unsteady_starts(linear, oscillator, names, free))
-            if not other.too_small or not found:
-                note = f"{words[0]}: the fit is that of a transient or a chaotic motion"
+            if not other.too_small:
+                rows = "" if size == len(x) else f" by the first {size} rows"
+                note = f"{words[0]}: the fit is one of a transient or a chaotic motion{rows}"
                 return replace(other, record=replace(other.record, notes=(*record.notes, note)))
     if failure:
         raise failure
@@ -225,8 +231,12 @@ def _best(problems: Sequence[Problem], known: bool) -> tuple[Problem, Any]:
             continue
         problem, last = problems[i], cost
         try:
-            for k in range(1, len(problem.prediction.parts()) - 1):
-                unknowns = _part(problem, k).solve(unknowns).x
+            sizes = [len(part.record.rows) for part in problem.prediction.parts()]
+            for k, size in enumerate(sizes[1:-1], 1):
+                found = _part(problem, k).solve(unknowns)
+                if found.cost * sizes[0] > ASTRAY * cost * size:
+                    raise NoAnswer(f"the motion that is like the first {sizes[0]} rows is unlike later ones")
+                unknowns = found.x
             ends.append((problem, problem.solve(unknowns)))
         except (ContactError, Refusal) as error:
             failure = failure or error
@@ -277,7 +287,7 @@ def _judged(problem: Problem, found: Any, oscillator: ImpactOscillator, known: b
         noise_known=known,
         freedom=problem.freedom,
         residuals=(-found.fun[:rows] / problem.weights).reshape(prediction.record.observed.shape),
-        chance=_chance(found.fun[:rows], prediction, known, problem.freedom),
+        chance=chance_of(found.fun[:rows], prediction, known, problem.freedom),
         problem=problem,
         unknowns=found.x,
     )
@@ -294,23 +304,3 @@ def _blind(axes: Array, names: Sequence[str]) -> str:
     share = np.abs(axes[-1])
     blind = [name for name, part in zip(names, share, strict=True) if part > PART * share.max()]
     return f"tell {' from '.join(blind)}" if len(blind) > 1 else f"determine {blind[0]}"
-
-
-def _chance(residuals: Array, prediction: Prediction, known: bool, freedom: int) -> float:
-    """Probability of residuals of this size or pattern from noise alone."""
-    found = [float(stats.chi2.sf(residuals @ residuals, freedom))] if known else []
-    kind, period = prediction.record.kind, prediction.period
-    if kind == "strobe":
-        rows = residuals.reshape(len(prediction.record.rows), -1)
-        means = np.array([rows[k::period].mean(axis=0) for k in range(period)])
-        within = float(np.sum((rows - means[np.arange(len(rows)) % period]) ** 2))
-        more, spare = freedom - residuals.size + means.size, residuals.size - means.size
-        if more > 0 and spare > 0:
-            ratio = (residuals @ residuals - within) / more / (within / spare)
-            found.append(float(stats.f.sf(ratio, more, spare)))
-    if kind == "displacement":
-        size, off = residuals.size, residuals - residuals.mean()
-        lagged = np.array([off[k:] @ off[:-k] for k in range(1, LAGS + 1)]) / (off @ off)
-        box = size * (size + 2) * np.sum(lagged**2 / (size - np.arange(1, LAGS + 1)))
-        found.append(float(stats.chi2.sf(box, LAGS)))
-    return min(1.0, len(found) * min(found)) if found else 1.0

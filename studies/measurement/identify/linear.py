@@ -42,6 +42,10 @@ class Linear:
         line = record.frequency or strongest_line(self.times, self.values)
         grid = [np.array([line, at / line, rate * line]) for at in FREE for rate in DECAYS]
         begun = min(grid, key=lambda one: float(np.sum(self.left(one)[1] ** 2)))
+
+        def off(logs: Array) -> Array:
+            return self.left(begun * np.exp(logs))[1]
+
         found = least_squares(
             lambda u: self.left(begun * np.exp(u))[1], np.zeros(3), x_scale="jac", max_nfev=60
         )

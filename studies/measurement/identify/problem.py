@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import stats
 from scipy.optimize import least_squares
 
 from beam import Refusal
@@ -23,6 +24,9 @@ MOST = 100
 GAIN = 1e-3
 """A fit ends where a step lowers chi^2 by less than this times the noise's variance: 0.03 standard errors."""
 
+
+LAGS = 10
+"""Number of lags in the autocorrelation of residuals."""
 
 RESPONSE, STEP = ("free_period", "decay_rate", "frequency"), 1e-6
 """The parameters that the response of the tip hangs on; a part of each, for differences of it."""
@@ -155,3 +159,23 @@ class Problem:
                 ftol=GAIN / self.freedom,
                 gtol=None,
             )
+
+
+def chance_of(residuals: Array, prediction: Prediction, known: bool, freedom: int) -> float:
+    """Probability of residuals of this size or pattern from noise alone."""
+    found = [float(stats.chi2.sf(residuals @ residuals, freedom))] if known else []
+    kind, period = prediction.record.kind, prediction.period
+    if kind == "strobe":
+        rows = residuals.reshape(len(prediction.record.rows), -1)
+        means = np.array([rows[k::period].mean(axis=0) for k in range(period)])
+        within = float(np.sum((rows - means[np.arange(len(rows)) % period]) ** 2))
+        more, spare = freedom - residuals.size + means.size, residuals.size - means.size
+        if more > 0 and spare > 0:
+            ratio = (residuals @ residuals - within) / more / (within / spare)
+            found.append(float(stats.f.sf(ratio, more, spare)))
+    if kind == "displacement":
+        size, off = residuals.size, residuals - residuals.mean()
+        lagged = np.array([off[k:] @ off[:-k] for k in range(1, LAGS + 1)]) / (off @ off)
+        box = size * (size + 2) * np.sum(lagged**2 / (size - np.arange(1, LAGS + 1)))
+        found.append(float(stats.chi2.sf(box, LAGS)))
+    return min(1.0, len(found) * min(found)) if found else 1.0

@@ -13,8 +13,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from contextlib import suppress
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,8 +21,7 @@ from scipy.optimize import least_squares
 from beam import Refusal
 from contact import ContactError, ImpactOscillator, SingleImpactOrbit, State, simulate
 from studies.measurement.identify.displacement import SENSOR, Displacement
-from studies.measurement.identify.kicks import Kicked, kicked_motions, poles
-from studies.measurement.identify.linear import Linear
+from studies.measurement.identify.kicks import Kicked, kicked_motions
 from studies.measurement.identify.predictions import Prediction, Strobes, Transitions, family_of
 from studies.measurement.identify.records import NoAnswer, Record
 from studies.measurement.identify.soundness import require_strobe_units, require_units
@@ -59,9 +56,6 @@ FACTORS = (0.1, 10.0, 0.3, 3.0, 0.03, 30.0)
 
 RESTITUTIONS = (0.1, 0.3, 0.6, 0.9)
 """Restitutions that are tried beside those of the record and the scene."""
-
-BELOW, SHORT, EARLY = 0.98, 0.3, 3.0
-"""Gaps below which a row is off the stop; drive periods that show a state at least, that are fitted first."""
 
 LOOKED = 200
 """Times of an orbit at which the tip may be farthest from the stop, where its state begins."""
@@ -184,52 +178,11 @@ def _displacement(
     return [
         one
         for i, motion in enumerate(likely)
-        for one in _starts(record, motion, oscillator, names, free, few=i > 0)
+        for one in starts_at(record, motion, oscillator, names, free, few=i > 0)
     ]
 
 
-def unsteady_starts(
-    linear: Linear, oscillator: ImpactOscillator, names: Sequence[str], free: Sequence[str]
-) -> list[tuple[Displacement, ImpactOscillator]]:
-    """Starts of a motion that does not repeat, at the first row off the stop, from kicked and linear ones.
-
-    Its state there is that of the steady motion and of mode 1, as the rows until the first impact show it.
-    """
-    record = linear.record
-    times, x, found = *record.rows.T, list[tuple[Displacement, ImpactOscillator]]()
-    motions = kicked_motions(times, x, oscillator, record.frequency)
-    likely = [one for one in motions if one.reading()["gap"] > 0.0 and one.steady != 0.0]
-    pairs = [pair for one in likely[:TRIED] for pair in _starts(record, one, oscillator, names, free, True)]
-    known = {
-        n: one.value for n, one in parameters_of(oscillator).items() if n in ("free_period", "decay_rate")
-    }
-    pairs += [(steady, with_values(at, known)) for steady, at in pairs]
-    with suppress(NoAnswer):
-        steady, at, _ = linear.start(oscillator, names, free)
-        gap = float(np.max(x)) - linear.offset if "gap" in names else oscillator.stop.gap
-        pairs.append((steady, with_values(at, {"gap": gap})))
-    for steady, at in pairs:
-        sensor, model, w = steady.reading(steady.extra), at.model, at.driven.angular_frequency
-        tip = (x - sensor["offset"]) / sensor["scale"]
-        below = tip < BELOW * at.stop.gap
-        begin = int(np.argmax(below))
-        least = int(np.searchsorted(times, times[begin] + SHORT * at.period))
-        end = max(least, begin + int(np.argmin(np.append(below[begin:], False))))
-        turn = at.driven.amplitude * np.exp(1j * (w * times[begin:end] + sensor["phase"]))
-        pole = poles(at)[model.leading_mode]
-        wave = np.exp(pole * (times[begin:end] - times[begin]))
-        off = tip[begin:end] - (at.tip_response() * turn).imag
-        a, b = np.linalg.lstsq(np.array([wave.real, -wave.imag]).T, off, rcond=None)[0]
-        own = np.eye(model.n_modes)[model.leading_mode] / model.phi * complex(a, b)
-        share = at.steady_response() * turn[0]
-        state = np.append(share.imag + own.real, (1j * w * share).imag + (pole * own).real)
-        rest = replace(record, rows=record.rows[begin:])
-        first = int(np.searchsorted(rest.rows[:, 0], times[begin] + EARLY * at.period))
-        found.append((Displacement(rest, at, state, sensor, free, first=first), at))
-    return found
-
-
-def _starts(
+def starts_at(
     record: Record,
     motion: Kicked,
     oscillator: ImpactOscillator,
