@@ -15,8 +15,8 @@ and to the parameters, Newton's method closes the orbit, and the state at s_0 fo
 No error grows from orbit to orbit, and an unstable orbit is fitted as well as a stable one.
 
 A motion that does not repeat begins at its first row, in a state that is fitted; a mode that hardly appears
-in the record is held by a prior, one per cent of the gap at the tip.  With the drive later by a time u and the
-same start the tip is at x(t; u), and
+in the record is held by a prior, one per cent of the gap at the tip.  With the drive later by a time u and
+the same start the tip is at x(t; u), and
 
     dx/du = x'(t) - Phi(t) (q', q'')  at the start,
 
@@ -148,7 +148,7 @@ class Displacement(Prediction):
         raise InvalidValue(f"no orbit of {self.period} drive periods was found with these parameters")
 
     def run(self, oscillator: ImpactOscillator, extra: Array) -> tuple[Trajectory, NDArray[np.int64]]:
-        """The motion, and the place of each row and of the end in it; InvalidValue if it rests on the stop."""
+        """The motion, the place of each row and of the end in it; InvalidValue if it rests on the stop."""
         if self._last is None or self._last[0] is not oscillator or self._last[1] is not extra:
             state, rows, end = self._placed(oscillator, extra)
             times, place = np.unique(np.append(rows, end), return_inverse=True)

@@ -144,16 +144,23 @@ def fit(
     sentence, for a record that cannot determine them.
     """
     require_names(names, oscillator)
-    if record.kind == "displacement":
-        record, oscillator = sound(record, oscillator)
     known = noise is not None or len(record.columns) == 4
     unit = noise or (letter.AMPLITUDE_STABILITY if record.kind == "transitions" else READ_OUT)
-    if record.kind != "displacement":
-        starts = predictions_of(record, oscillator, tuple(names), free)
-        return _judged(
-            *_best([Problem(one, at, tuple(names), unit) for one, at in starts], known), oscillator, known
-        )
-    return _displacement(record, oscillator, tuple(names), free, unit, known)
+    if record.kind == "displacement":
+        return _displacement(*sound(record, oscillator), tuple(names), free, unit, known)
+    starts = predictions_of(record, oscillator, tuple(names), free)
+    return _solved(starts, tuple(names), oscillator, unit, known)
+
+
+def _solved(
+    starts: Sequence[tuple[Prediction, ImpactOscillator]],
+    names: tuple[str, ...],
+    oscillator: ImpactOscillator,
+    unit: float,
+    known: bool,
+) -> Fit:
+    problems = [Problem(one, at, names, unit) for one, at in starts]
+    return _judged(*_best(problems, known), oscillator, known)
 
 
 def _displacement(
@@ -165,16 +172,18 @@ def _displacement(
     known: bool,
 ) -> Fit:
     """The best fit of a displacement: of a linear motion, of one that repeats, or of one that does not."""
-
-    def solved(starts: Sequence[tuple[Prediction, ImpactOscillator]]) -> Fit:
-        return _judged(
-            *_best([Problem(one, at, names, unit) for one, at in starts], known), oscillator, known
-        )
-
-    linear, found, failure = Linear(record), None, None
+    given = names, oscillator, unit, known
+    linear, failure = Linear(record), None
+    found: Fit | None = None
     try:
         starts = [] if linear.likely else predictions_of(record, oscillator, names, free)
-        found = solved(starts) if starts else _without_impacts(linear, oscillator, names, free, unit, known)
+        if starts:
+            found = _solved(starts, *given)
+        else:  # a linear motion, its stop far away while it is fitted
+            prediction, begun, own = linear.start(oscillator, names, free)
+            found = _solved([(prediction, begun)], own, *given[1:])
+            back = with_values(found.oscillator, {"gap": oscillator.stop.gap})
+            found = replace(found, oscillator=back)
         if not found.too_small:
             return found
     except NoAnswer as error:
@@ -186,28 +195,14 @@ def _displacement(
     for size in dict.fromkeys([len(x), early] if words else []):
         linear.record = replace(record, rows=record.rows[:size])
         with suppress(NoAnswer):
-            other = solved(unsteady_starts(linear, oscillator, names, free))
+            other = _solved(unsteady_starts(linear, oscillator, names, free), *given)
             if not other.too_small:
                 rows = "" if size == len(x) else f" by the first {size} rows"
                 note = f"{words[0]}: the fit is one of a transient or a chaotic motion{rows}"
                 return replace(other, record=replace(other.record, notes=(*record.notes, note)))
-    if failure:
-        raise failure
+    if found is None:
+        raise failure or NoAnswer("no motion like the record's was found")
     return found
-
-
-def _without_impacts(
-    linear: Linear,
-    oscillator: ImpactOscillator,
-    names: Sequence[str],
-    free: Sequence[str],
-    unit: float,
-    known: bool,
-) -> Fit:
-    """The fit of a linear motion, the stop of `oscillator` left where it was."""
-    prediction, begun, own = linear.start(oscillator, names, free)
-    found = _judged(*_best([Problem(prediction, begun, own, unit)], known), oscillator, known)
-    return replace(found, oscillator=with_values(found.oscillator, {"gap": oscillator.stop.gap}))
 
 
 def _best(problems: Sequence[Problem], known: bool) -> tuple[Problem, Any]:

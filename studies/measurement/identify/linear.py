@@ -27,7 +27,7 @@ NAMES, RESPONSE = ("free_period", "decay_rate", "amplitude", "frequency"), 3
 """Parameters that such a motion hangs on; how many of the first do so by the response alone."""
 
 FREE, DECAYS, AWAY = np.geomspace(0.5, 2.0, 40), (0.03, 0.1, 0.3), 1e3
-"""Free periods and decay rates a search begins with, by the drive period; distance of the stop, in readings."""
+"""Free periods and decay rates that a search begins with, by the drive period; gap by the largest reading."""
 
 SEEN, NOISE = 40.0, 2.0
 """Fall of chi^2 by which a free mode is seen, or this motion is better than an orbit; what it may leave over

@@ -190,8 +190,8 @@ def starts_at(
     free: Sequence[str],
     few: bool,
 ) -> list[tuple[Displacement, ImpactOscillator]]:
-    """Starts at a kicked motion, with several values of what it does not show of the contact, or `few`; and at
-    the given values."""
+    """Starts at a kicked motion, with several values of what it does not show of the contact, or `few`;
+    and at the given values."""
     at, read = motion.oscillator, motion.reading()
     sign, read["restitution"] = read["sign"], min(max(read["restitution"], 0.01), 0.99)
     known = parameters_of(oscillator)
@@ -219,20 +219,20 @@ def starts_at(
         others = [{}]
     elif "restitution" in law:
         others += [{"restitution": part} for part in RESTITUTIONS]
-    at = [with_values(begun, other) for other in others]
+    tried = [with_values(begun, other) for other in others]
     given = [with_values(oscillator, {"frequency": begun.driven.frequency})]
     given = [] if few or not oscillator.driven.amplitude else given
     return [
         (Displacement(record, one, start, sensor, free, period=motion.period, clock=lowest), one)
-        for one in [*(_behind(one, start, lowest, lasting) for one in at), *given]
+        for one in [*(_behind(one, start, lowest, lasting) for one in tried), *given]
     ]
 
 
 def _behind(oscillator: ImpactOscillator, start: Array, clock: float, lasting: float) -> ImpactOscillator:
     """The oscillator with the gap at which a kick in the middle of a contact is this contact.
 
-    A kicked tip goes on at its approach velocity v until the middle of a contact of duration d: to v d/2 beyond
-    the stop.
+    A kicked tip goes on at its approach velocity v until the middle of a contact of duration d: to v d/2
+    beyond the stop.
     """
     state = State(displacement=start[0], velocity=start[1], time=clock)
     try:

@@ -1,6 +1,6 @@
 """Starts of a motion that does not repeat: a transient, or chaos.
 
-Rows of chaos that nearly repeat after m drive periods are next to an unstable orbit, and give its kicked motion
+Rows of chaos that nearly repeat after m drive periods are next to an unstable orbit, and give its kicks
 (close returns: Auerbach et al., Phys. Rev. Lett. 58 (1987) 2387).  The motion begins with the first flight.
 """
 
