@@ -199,7 +199,7 @@ def test_without_impacts_the_linear_motion_is_the_answer(scene_of_eq1):
     assert found.oscillator.stop.gap == scene_of_eq1.stop.gap
     record, amplitude = measured(-0.02, rest=True, begin=20.0)
     with pytest.raises(
-        NoAnswer, match="steady motion without impacts at 22.2 Hz of amplitude 9.8 mm: it cannot"
+        NoAnswer, match=r"steady motion without impacts at 22\.2 Hz of amplitude 9\.8 mm: it cannot"
     ):
         fit(record, scene_of_eq1, ALL)
     held = with_values(scene_of_eq1, {"amplitude": amplitude, "decay_rate": 3.56})

@@ -220,7 +220,7 @@ def contradictions(times: Array, values: Array, residuals: Array, frequency: flo
         left = repetition(times, values, frequency)
         period = int(np.argmax(left < 1.3 * left.min())) + 1
     pace, predicted, bare = frequency / period, values - residuals, residuals - medfilt(residuals, 5)
-    off, noise = off_neighbours(times, values)
+    off = off_neighbours(times, values)[0]
     stray = np.minimum(np.abs(bare) / (1.4826 * np.median(np.abs(bare[bare != 0.0]))), 3.0 * off)
     found = added(times, residuals, pace) + poor_rows(times, values, stray, frequency)
     found += walked(times, values, frequency, period)

@@ -182,8 +182,7 @@ def _displacement(
         else:  # a linear motion, its stop far away while it is fitted
             prediction, begun, own = linear.start(oscillator, names, free)
             found = _solved([(prediction, begun)], own, *given[1:])
-            back = with_values(found.oscillator, {"gap": oscillator.stop.gap})
-            found = replace(found, oscillator=back)
+            found = replace(found, oscillator=with_values(found.oscillator, {"gap": oscillator.stop.gap}))
         if not found.too_small:
             return found
     except NoAnswer as error:
@@ -254,13 +253,13 @@ def _judged(problem: Problem, found: Any, oscillator: ImpactOscillator, known: b
     """The fit that a solution is; NoAnswer if the record does not determine it."""
     prediction, rows = problem.prediction, problem.observed.size
     spread = 1.0 if known else float(np.sqrt(2.0 * found.cost / problem.freedom))
-    names = problem.names + prediction.sensor
-    own = problem.named
+    names, own = problem.names + prediction.sensor, problem.named
+    chance = chance_of(found.fun[:rows], prediction, known, problem.freedom)
     lengths = np.linalg.norm(found.jac, axis=0)
     lengths[lengths == 0.0] = 1.0
     left, singular, axes = np.linalg.svd(found.jac / lengths, full_matrices=False)
     gain = float(np.sum((left.T @ found.fun) ** 2)) / spread**2
-    if gain > SETTLED:
+    if gain > SETTLED and chance > TOO_SMALL:  # else the model is too small
         raise NoAnswer(f"the fit has not settled after {MOST} steps: chi^2 would still fall by {gain:.2g}")
     slopes, values = problem.slopes(found.x), problem.values(found.x)
     sizes = np.where(problem.log, LOST * np.abs(values), np.maximum(np.abs(values), problem.sizes))
@@ -282,7 +281,7 @@ def _judged(problem: Problem, found: Any, oscillator: ImpactOscillator, known: b
         noise_known=known,
         freedom=problem.freedom,
         residuals=(-found.fun[:rows] / problem.weights).reshape(prediction.record.observed.shape),
-        chance=chance_of(found.fun[:rows], prediction, known, problem.freedom),
+        chance=chance,
         problem=problem,
         unknowns=found.x,
     )
