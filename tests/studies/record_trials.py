@@ -25,8 +25,9 @@ from record_information import blind, truth_of
 from beam import ModalModel, Refusal, single_mode
 from contact import ContactError, HarmonicDrive, ImpactOscillator, LinearContact, NewtonRestitution, Stop
 from studies.measurement.identify.estimates import estimates_of
-from studies.measurement.identify.fit import TOO_SMALL, Fit, fit
+from studies.measurement.identify.fit import fit
 from studies.measurement.identify.records import Record
+from studies.measurement.identify.result import TOO_SMALL, Fit
 from studies.physics.parameters import with_values
 
 PARTS = ("estimate", "low90", "high90", "standard_error")

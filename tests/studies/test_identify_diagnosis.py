@@ -4,17 +4,23 @@ from __future__ import annotations
 
 import math
 import re
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from oscillators import modes_on_stop, newton
-from record_simulators import draw
+from record_simulators import Beam, draw, follow, settle, tip
 
+from beam import InvalidValue
 from contact import State, simulate
 from studies.measurement.identify import diagnosis
 from studies.measurement.identify.diagnosis import contradictions, defects, drive_found, unit_of
+from studies.measurement.identify.fit import fit
 from studies.measurement.identify.kicks import harmonics
+from studies.measurement.identify.records import NoAnswer, Record
+from studies.physics.parameters import with_values
+from studies.shell.scene import single_mode_at
 
 SEED, PERIOD, LINES = 66, 4, np.arange(61)
 """A settled record that repeats after four of its 34 drive periods; orders of its lines that are taken."""
@@ -128,3 +134,137 @@ def test_a_sentence_names_the_unit_or_the_factor(lab):
     assert unit_of(22.2, 0.0222, "frequency") == "the given frequency looks like kilohertz: multiply by 1000"
     assert unit_of(1.0, 9.9, "amplitude") == "the record looks like g: multiply by 9.81"
     assert unit_of(0.010, 0.0119, "gap") is None
+
+
+F, ALL = 22.2, ("free_period", "decay_rate", "gap", "amplitude", "restitution", "frequency")
+TRUTH = {"free_period": 40.8e-3, "decay_rate": 3.56, "gap": 0.01, "restitution": 0.15, "frequency": F}
+
+
+def measured(excess, rows=2000, rate=1000.0, *, rest=False, begin=0.0, frequency=F):
+    """A record of Eq. (1), settled or from rest on, and its amplitude of the base."""
+    omega, mu = math.hypot(2.0 * math.pi / TRUTH["free_period"], 0.5 * TRUTH["decay_rate"]), np.array([3.56])
+    at = Beam(np.array([omega]), mu, np.ones(1), np.ones(1), 0.01, frequency, excess, TRUTH["restitution"])
+    times, state = np.arange(rows) / rate, np.zeros(2) if rest else settle(at)[1]
+    if rest:
+        flights, clock = follow(at, state, 0, begin + times[-1] + 1e-3)[2], begin + times
+    else:
+        period = settle(at)[0] / F
+        flights, clock = follow(at, state, 0, period)[2], times % period
+    x = tip(at, flights, clock)[0] + 1e-5 * np.random.default_rng(3).standard_normal(rows)
+    return Record(columns=("time_s", "x_m"), rows=np.column_stack([times, x]), frequency=frequency), float(
+        at.amplitude
+    )
+
+
+@pytest.fixture(scope="module")
+def scene_of_eq1(letter_scene):
+    return single_mode_at(letter_scene, F)
+
+
+@pytest.fixture(scope="module")
+def settled():
+    return measured(1e-3)
+
+
+def right(found, amplitude):
+    """All fitted parameters are within four standard errors, and the residuals are noise."""
+    assert not found.too_small
+    true = TRUTH | {"amplitude": amplitude, "frequency": round(found.record.frequency or F, 1)}
+    rows = zip(found.names, found.estimate, found.errors, strict=True)
+    assert {n: (at, true[n]) for n, at, error in rows if n in true and abs(at - true[n]) > 4.0 * error} == {}
+
+
+def test_a_transient_is_fitted_as_one_that_does_not_repeat(scene_of_eq1):
+    record, amplitude = measured(0.02, rest=True)
+    found = fit(record, scene_of_eq1, ALL)
+    right(found, amplitude)
+    assert found.problem.prediction.period == 0 and "transient" in found.record.notes[-1]
+
+
+def test_chaos_is_fitted_and_said(scene_of_eq1):
+    """Its fit begins next to an unstable orbit."""
+    record, amplitude = measured(0.2, 1200, 2000.0, rest=True, begin=5.0, frequency=22.4)
+    found = fit(record, scene_of_eq1, ALL)
+    right(found, amplitude)
+    assert "does not repeat" in found.record.notes[-1]
+
+
+def test_without_impacts_the_linear_motion_is_the_answer(scene_of_eq1):
+    """From rest on all of it is fitted; the steady motion gives one of three numbers."""
+    record, amplitude = measured(-0.6, rest=True)
+    found = fit(record, scene_of_eq1, ALL)
+    right(found, amplitude)
+    assert found.names[:4] == ("free_period", "decay_rate", "amplitude", "frequency")
+    assert found.record.notes == ("no impact in the record: not fitted: gap, restitution",)
+    assert found.oscillator.stop.gap == scene_of_eq1.stop.gap
+    record, amplitude = measured(-0.02, rest=True, begin=20.0)
+    with pytest.raises(
+        NoAnswer, match=r"steady motion without impacts at 22\.2 Hz of amplitude 9\.8 mm: it cannot"
+    ):
+        fit(record, scene_of_eq1, ALL)
+    held = with_values(scene_of_eq1, {"amplitude": amplitude, "decay_rate": 3.56})
+    right(fit(record, held, ("free_period", "gap")), amplitude)
+
+
+def test_units_and_a_drive_that_contradict_the_record_are_wrong_use(scene_of_eq1, settled):
+    record, amplitude = settled
+    given = replace(record, amplitude=amplitude)
+    table = {
+        "amplitude is .* the record looks like millimetres: divide by 1000": ([1.0, 1e3], F, amplitude),
+        "amplitude is .* the given amplitude looks like millimetres": ([1.0, 1.0], F, 1e3 * amplitude),
+        "gap is .* the record looks like millimetres": ([1.0, 1e3], F, None),
+        "free_period is .* the record looks like milliseconds": ([1e3, 1.0], None, None),
+        "right if time_s is in ms: divide it by 1e3": ([1e3, 1.0], F, amplitude),
+        "is off by .1.35 %: the record's is f = 22.2": ([1.0, 1.0], 1.0135 * F, amplitude),
+        "is in kHz": ([1.0, 1.0], 1e-3 * F, amplitude),
+    }
+    for sentence, (scales, frequency, height) in table.items():
+        one = replace(given, rows=record.rows * scales, frequency=frequency, amplitude=height)
+        with pytest.raises(InvalidValue, match=sentence):
+            fit(one, with_values(scene_of_eq1, {"gap": 0.0105, "amplitude": height or amplitude}), ALL)
+    found = fit(replace(record, frequency=1.005 * F), scene_of_eq1, ALL)
+    right(found, amplitude)
+    assert "the given drive of 22.311 Hz is off by +0.5" in found.record.notes[0]
+
+
+def test_strobe_points_in_another_unit_are_wrong_use(scene_of_eq1):
+    known = scene_of_eq1.with_excess(1e-3)
+    record = Record(columns=("x_m",), rows=np.tile([[0.003], [0.008]], (9, 1)), frequency=F)
+    for factor, words in ((1e3, "millimetres: divide by 1000"), (1e6, "micrometres: divide by 1e6")):
+        with pytest.raises(InvalidValue, match=f"x_m reaches .* the record looks like {words}"):
+            fit(replace(record, rows=factor * record.rows), known, ("gap",))
+    amplitude = 1e3 * known.driven.amplitude
+    with pytest.raises(InvalidValue, match=r"the given amplitude is 2\.\d+ m, .*: --drive takes Hz and mm"):
+        fit(replace(record, amplitude=amplitude), known.with_amplitude(amplitude), ("gap",))
+
+
+def test_a_scale_is_found_where_the_gap_or_the_amplitude_is_held(scene_of_eq1, settled):
+    record, amplitude = settled
+    record = replace(record, rows=record.rows * [1.0, -0.85])
+    for held, value in (("gap", 0.01), ("amplitude", amplitude)):
+        names = tuple(name for name in ALL if name != held)
+        found = fit(
+            record, with_values(scene_of_eq1, {held: value}), names, free=("phase", "offset", "scale")
+        )
+        right(found, amplitude)
+        assert found.estimate[-1] == pytest.approx(-0.85, abs=4.0 * found.errors[-1])
+
+
+def test_a_long_record_is_thinned_and_an_amplitude_ten_times_off_is_said(run_study, tmp_path, monkeypatch):
+    """A stuck reading ends with a sentence and exit code 3.  Profiles are left out: they take time."""
+    monkeypatch.setattr("studies.measurement.identify.estimates.traded", lambda found, quick: [])
+    record, amplitude = measured(1e-3, rows=48_000, rate=4000.0)
+    noted = replace(record, amplitude=10.0 * amplitude)
+    (tmp_path / "a.csv").write_text(noted.text())
+    ran = run_study("identify", "--quick", str(tmp_path / "a.csv"))
+    assert ran.code == 0, ran.err
+    assert "1 row in 3 of 48000 is fitted" in ran.err and ran.rows("quality")[0]["rows"] == "16000"
+    assert re.search("fitted amplitude of 2.2.* mm contradicts the given 22", ran.err)
+    stuck = replace(
+        record, rows=np.column_stack([record.rows[:2000, 0], np.maximum(record.rows[:2000, 1], -0.008)])
+    )
+    (tmp_path / "b.csv").write_text(stuck.text())
+    ran = run_study("identify", str(tmp_path / "b.csv"))
+    assert ran.code == 3 and "the record has no answer: readings stick at -8 mm" in ran.err
+    ran = run_study("identify", str(tmp_path / "b.csv"), "--fit", "gap", "amplitude", "scale")
+    assert ran.code == 2 and "scale, gap and amplitude: give one of the three" in ran.err

@@ -59,9 +59,9 @@ import numpy as np
 from beam import InvalidValue, Refusal
 from contact import ImpactOscillator
 from studies.measurement.identify import figure
+from studies.measurement.identify.diagnosis import contradictions, wanders
 from studies.measurement.identify.displacement import SENSOR
 from studies.measurement.identify.estimates import estimates_of, report
-from studies.measurement.identify.fit import Fit
 from studies.measurement.identify.fit import fit as fitted
 from studies.measurement.identify.next_measurement import (
     EXCESSES,
@@ -76,6 +76,8 @@ from studies.measurement.identify.next_measurement import (
     measurements_at,
 )
 from studies.measurement.identify.records import Kind, NoAnswer, Record, read_record, synthetic
+from studies.measurement.identify.result import Fit
+from studies.measurement.identify.soundness import notes_of
 from studies.physics.parameters import (
     Description,
     described,
@@ -193,6 +195,8 @@ def identify(
             require_names(in_full(fit), oscillator, more=SENSOR)
             if read.kind != "displacement" and (lost := [name for name in fit if name in SENSOR]):
                 raise InvalidValue(f"fit names {lost[0]}, which only a record of displacement has")
+            if {"scale", "gap", "amplitude"} <= {*in_full(fit)}:
+                raise InvalidValue("fit names scale, gap and amplitude: give one of the three")
     elif fit:
         raise InvalidValue(f"fit names {' '.join(fit)}, but no record is given: put its file before --fit")
     else:
@@ -214,6 +218,8 @@ def identify(
     fit_scene = as_scene(scene, found[first])  # before the report: it refuses values that no scene has
     results = report(run, found)
     for name, one in found.items():
+        for note in notes_of(one.record, dict(zip(one.names, one.estimate, strict=True)).get("amplitude")):
+            run.say(f"{name}: {note}")
         if one.record.kind == "displacement" and (rows := in_step(one.record, one.oscillator)):
             run.say(
                 f"{name}: {rows} rows a drive period, so that all impacts lie alike between two of them: "
@@ -241,7 +247,13 @@ def examples(scene: Scene, run: Run, delay: float | None) -> dict[str, tuple[Rec
 
 def reason(one: Fit) -> str:
     """Why the residuals of a fit are unlike noise."""
-    return "the model is too small for the record"
+    if one.record.kind != "displacement":
+        return "the model is too small for the record"
+    (times, values), frequency = one.record.rows.T, one.oscillator.driven.frequency
+    residuals, period = one.residuals[:, 0], int(one.problem.prediction.period)
+    found = wanders(times, values, residuals, frequency)
+    found += contradictions(times, values, residuals, frequency, period)
+    return "; ".join([*dict.fromkeys(found)][:2])
 
 
 def answered(one: Fit) -> Fit:

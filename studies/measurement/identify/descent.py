@@ -34,8 +34,7 @@ INSIDE = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """The end of a search: unknowns `x`, residuals `fun`, their derivatives `jac`, and by how much chi^2 would
-    still fall (`left`)."""
+    """The end of a search: unknowns `x`, residuals `fun`, their derivatives `jac`; chi^2 may fall by `left`."""
 
     x: Array
     fun: Array

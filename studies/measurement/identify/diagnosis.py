@@ -28,6 +28,9 @@ STICKING, STRAY, SURE, ALIKE, MANY = 6.0, 12.0, 8.0, 0.025, 6000
 outlier (corners: 8), of an estimate that is no chance. Part that an orbit leaves (noise of 1 %: 0.016); rows
 that suffice to see it."""
 MISREAD = {1.0: "", 1e-3: "in kHz", 2.0 * math.pi: "in rad/s", 60.0: "in 1/min", 2.0: "2 f", 0.5: "f/2"}
+MISREAD |= {
+    10.0**n: f"right if time_s is in {unit}: divide it by 1e{n}" for n, unit in ((3, "ms"), (6, "µs"))
+}
 """What a given drive may be, by its ratio to that of the record."""
 
 
@@ -198,13 +201,26 @@ def filtered(times: Array, values: Array, predicted: Array, pace: float) -> list
     return [f"lines fall below the predicted ones as by a low-pass near {corners[best]:.0f} Hz"]
 
 
+def wanders(times: Array, values: Array, residuals: Array, frequency: float) -> list[str]:
+    """Whether residuals fade or the record does not repeat: a transient or chaos."""
+    parts = np.array_split(np.arange(times.size), max(1, min(8, int(frequency * (times[-1] - times[0])))))
+    size = np.array([residuals[part].std() for part in parts])
+    quiet = int(np.argmin(size > 3.0 * np.median(size)))
+    if len(parts) > 3 and quiet > 0 and np.all(size[quiet:] < 3.0 * np.median(size)):
+        return [f"the residuals fade within the first {times[parts[quiet][0]] - times[0]:.2g} s: a transient"]
+    left = repetition(times, values, frequency)
+    if left.min() > max(ALIKE * values.std(), 3.0 * off_neighbours(times, values)[1]):
+        return [f"the record does not repeat within {left.size} drive periods"]
+    return []
+
+
 def contradictions(times: Array, values: Array, residuals: Array, frequency: float, period: int) -> list[str]:
     """What residuals show that are no noise; the drive is at `frequency` [Hz], a `period` 0 is unknown."""
     if period == 0:
         left = repetition(times, values, frequency)
         period = int(np.argmax(left < 1.3 * left.min())) + 1
     pace, predicted, bare = frequency / period, values - residuals, residuals - medfilt(residuals, 5)
-    off, noise = off_neighbours(times, values)
+    off = off_neighbours(times, values)[0]
     stray = np.minimum(np.abs(bare) / (1.4826 * np.median(np.abs(bare[bare != 0.0]))), 3.0 * off)
     found = added(times, residuals, pace) + poor_rows(times, values, stray, frequency)
     found += walked(times, values, frequency, period)
@@ -214,12 +230,4 @@ def contradictions(times: Array, values: Array, residuals: Array, frequency: flo
         found += [f"the amplitude changes by {100.0 * change:.2g} % through the record"]
     if found := found or filtered(times, values, predicted, pace):
         return found
-    parts = np.array_split(np.arange(t.size), max(1, min(8, int(pace * (times[-1] - times[0])))))
-    size = np.array([residuals[part].std() for part in parts])
-    quiet = int(np.argmin(size > 3.0 * np.median(size)))
-    if len(parts) > 3 and quiet > 0 and np.all(size[quiet:] < 3.0 * np.median(size)):
-        return [f"the residuals fade within the first {times[parts[quiet][0]] - times[0]:.2g} s: a transient"]
-    left = repetition(times, values, frequency)
-    if left.min() > max(ALIKE * values.std(), 3.0 * noise):
-        return [f"the record does not repeat within {left.size} drive periods"]
-    return ["the model is too small for the record"]
+    return wanders(times, values, residuals, frequency) or ["the model is too small for the record"]

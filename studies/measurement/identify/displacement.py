@@ -15,8 +15,8 @@ and to the parameters, Newton's method closes the orbit, and the state at s_0 fo
 No error grows from orbit to orbit, and an unstable orbit is fitted as well as a stable one.
 
 A motion that does not repeat begins at its first row, in a state that is fitted; a mode that hardly appears
-in the record is held by a prior, one per cent of the gap at the tip.  With the drive later by a time u and the
-same start the tip is at x(t; u), and
+in the record is held by a prior, one per cent of the gap at the tip.  With the drive later by a time u and
+the same start the tip is at x(t; u), and
 
     dx/du = x'(t) - Phi(t) (q', q'')  at the start,
 
@@ -51,8 +51,9 @@ CLOSED, STEPS = 1e-10, 12
 FAR = 1.0
 """A step of Newton's method that leads nowhere, in gaps at the tip."""
 
-FEW = 1500
-"""Rows with which a search begins."""
+FEW, GROWTH = 1500, 1.2
+"""Rows with which a search begins; factor by which the rows of a motion that does not repeat grow: in chaos a
+larger one leads to local optima."""
 
 SENSOR: Mapping[str, float] = {"phase": 0.0, "offset": 0.0, "scale": 1.0}
 """The numbers of a sensor, each with its value where it is not fitted: the phase of the drive at time zero
@@ -101,7 +102,7 @@ class Displacement(Prediction):
         rows = len(self.times)
         if self.period:
             return [self.part(slice(None, None, -(-rows // FEW))), self]
-        counts = [self.first * 2**k for k in range(64) if 0 < self.first * 2**k < 0.75 * rows]
+        counts = [int(self.first * GROWTH**k) for k in range(64) if 0 < self.first * GROWTH**k < rows]
         return [*(self.part(slice(count)) for count in counts), self]
 
     def again(self) -> Displacement:
@@ -153,7 +154,7 @@ class Displacement(Prediction):
         raise InvalidValue(f"no orbit of {self.period} drive periods was found with these parameters")
 
     def run(self, oscillator: ImpactOscillator, extra: Array) -> tuple[Trajectory, NDArray[np.int64]]:
-        """The motion, and the place of each row and of the end in it; InvalidValue if it rests on the stop."""
+        """The motion, the place of each row and of the end in it; InvalidValue if it rests on the stop."""
         if self._last is None or self._last[0] is not oscillator or self._last[1] is not extra:
             state, rows, end = self._placed(oscillator, extra)
             times, place = np.unique(np.append(rows, end), return_inverse=True)

@@ -11,8 +11,8 @@ import numpy as np
 
 from studies.measurement.identify import figure
 from studies.measurement.identify.displacement import UNITS
-from studies.measurement.identify.fit import Fit
 from studies.measurement.identify.profiles import Profile, rows_of
+from studies.measurement.identify.result import Fit
 from studies.physics.parameters import parameters_of
 from studies.shell.run import Run
 

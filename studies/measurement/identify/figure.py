@@ -11,9 +11,9 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from studies import letter
-from studies.measurement.identify.fit import Fit
 from studies.measurement.identify.next_measurement import STABLE, Measurement, Plan, best
 from studies.measurement.identify.profiles import Profile
+from studies.measurement.identify.result import Fit
 from studies.physics.parameters import parameters_of
 from studies.shell import plotting
 

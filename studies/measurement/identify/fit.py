@@ -1,140 +1,52 @@
-"""Least squares: from a record to parameters, errors and correlations, and whether the model is enough.
+"""Least squares: from a record to the best fit of many starts.
 
-    r_i = (observed_i - predicted_i(p))/sigma_i,   chi^2 = sum r_i^2  ->  least,
-    covariance  s^2 (J^T J)^-1,   s^2 = 1 where the noise is known, else chi^2/(n - number of unknowns),
+    r_i = (observed_i - predicted_i(p))/sigma_i,   chi^2 = sum r_i^2  ->  least.
 
-90 % intervals by Student's t. A step to where there is no orbit is rejected by the trust region. The model is
-too small where residuals are not noise: by their size if the noise is known, and by their pattern: strobe
-points by the lack-of-fit test of rows that repeat (between the m points, against within), a displacement by
-the autocorrelation of its residuals (Ljung and Box, Biometrika 65 (1978) 297).
+All starts are refined on a part of the rows, the best that differ on all rows; the best of these is kept.
+Where a profile of the likelihood finds a better fit, the search goes on from there.  A displacement is
+tried as an orbit; one without impacts as a linear motion; one that does not repeat from its first row on.
 """
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
-from scipy import stats
-from scipy.special import expit, logit
 
-from beam import InvalidValue, Refusal
+from beam import Refusal
 from contact import ContactError, ImpactOscillator
 from studies import letter
 from studies.measurement.identify.descent import Found
-from studies.measurement.identify.displacement import SENSOR
+from studies.measurement.identify.diagnosis import wanders
+from studies.measurement.identify.linear import Linear
 from studies.measurement.identify.predictions import Prediction
-from studies.measurement.identify.problem import MOST, SETTLED, Problem
-from studies.measurement.identify.profiles import Point, Walk
-from studies.measurement.identify.records import READ_OUT, Record
+from studies.measurement.identify.problem import Problem
+from studies.measurement.identify.profiles import Point
+from studies.measurement.identify.records import READ_OUT, NoAnswer, Record
+from studies.measurement.identify.result import Fit, judged
+from studies.measurement.identify.soundness import sound
 from studies.measurement.identify.starts import predictions_of
-from studies.physics.parameters import parameters_of, require_names
+from studies.measurement.identify.unsteady import unsteady_starts
+from studies.physics.parameters import require_names, with_values
 
 Array = NDArray[np.float64]
-
-LEVEL = 0.90
-"""Probability of the intervals."""
-
-SINGULAR = 1e-8
-"""Ratio of singular values below which the record does not depend on a direction of the parameters."""
-
-TOO_SMALL = 1e-3
-"""Probability of such residuals from noise alone, below which the model is called too small."""
-
-LAGS = 10
-"""Number of lags in the autocorrelation of residuals."""
 
 LEASH = 1.0
 """Prior of the parameters while the beginning of a record is fitted, which need not determine all of them."""
 
-EARLY, ROUGH, FINISHED, SAME = 40, 1e-3, 3, 3e-3
+EARLY, ROUGH, FINISHED, SAME, ASTRAY = 40, 1e-3, 3, 3e-3, 9.0
 """Most steps from each start, until chi^2 falls by no more than this part; how many are fitted to the end;
-relative difference of values that are the same."""
+relative difference of values that are the same; growth of chi^2 by row at which the fit of more and more rows
+is given up."""
+
+SHORT = 20.0
+"""Drive periods of a motion that are fitted where more are not: chaos forgets its start."""
 
 AGAIN, BETTER = 4, 0.2
-"""How often a fit begins again at a point of a profile that is better, and by how much of the noise's variance."""
-
-PART, LOST = 0.3, 2.0
-"""Part of the largest from which a parameter takes part in a direction that is not determined; standard error
-of a logarithm above which its parameter is not determined."""
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Fit:
-    """A fit; arrays by `names`, parameters and then numbers of the sensor, in SI units.
-
-    `before` has the values before the record was looked at, `start` those at the start of the fit.
-
-    `noise`: standard deviation of x [m], or of an excess in units of its error; `freedom`: rows less
-    unknowns; `residuals`: observed less predicted, shape of the record's `observed`; `chance`: probability of
-    residuals of such size or pattern from noise alone; `problem` and `unknowns`: what was solved; `walks`: the
-    intervals of the parameters along which chi^2 is no parabola, by its profile.
-    """
-
-    record: Record
-    oscillator: ImpactOscillator
-    names: tuple[str, ...]
-    before: Array
-    start: Array
-    estimate: Array
-    covariance: Array
-    noise: float
-    noise_known: bool
-    freedom: int
-    residuals: Array
-    chance: float
-    problem: Problem
-    unknowns: Array
-    walks: Mapping[str, tuple[float, float]] = field(default_factory=dict)
-
-    @property
-    def errors(self) -> Array:
-        """Standard errors; of a parameter with a profile those that would give its interval."""
-        found = np.sqrt(np.diag(self.covariance))
-        for name, (low, high) in self.walks.items():
-            found[self.names.index(name)] = (high - low) / (2.0 * self.reach)
-        return np.asarray(found)
-
-    @property
-    def correlations(self) -> Array:
-        """Shape (n, n)."""
-        errors = np.sqrt(np.diag(self.covariance))
-        return self.covariance / np.outer(errors, errors)
-
-    def walk(self, name: str) -> Walk:
-        """The likelihood along a parameter."""
-        variance, i = (self.noise / self.problem.noise) ** 2, self.names.index(name)
-        error = float(np.sqrt(self.covariance[i, i]))
-        return Walk(self.problem, self.unknowns, error, variance, name)
-
-    @property
-    def too_small(self) -> bool:
-        """Whether the residuals are unlike noise: the model is too small for the record."""
-        return self.chance < TOO_SMALL
-
-    @property
-    def reach(self) -> float:
-        """Half a 90 % interval in standard errors, by Student's t; the normal law's if noise is known."""
-        tail = 0.5 + 0.5 * LEVEL
-        return float(stats.norm.ppf(tail) if self.noise_known else stats.t.ppf(tail, self.freedom))
-
-    def intervals(self) -> Array:
-        """Lower and upper ends, shape (n, 2), within the physical range.
-
-        They are those of the unknowns of the problem, of a restitution r those of log(r/(1 - r)).
-        """
-        log = self.problem.log[self.problem.named]
-        wide = self.reach * np.sqrt(np.diag(self.covariance))
-        found = self.estimate[:, None] + np.outer(wide, [-1.0, 1.0])
-        factor = np.exp(wide[log] / self.estimate[log])
-        found[log] = self.estimate[log, None] * np.column_stack([1.0 / factor, factor])
-        for i, name in enumerate(self.names):
-            if name == "restitution" and 0.0 < (r := self.estimate[i]) < 1.0:
-                part = wide[i] / (r * (1.0 - r))
-                found[i] = expit(logit(r) + np.array([-part, part]))
-            found[i] = self.walks.get(name, found[i])
-        return np.asarray(found)
+"""How often a fit begins again at a better point of a profile, and by how much chi^2 is less there."""
 
 
 def fit(
@@ -148,21 +60,75 @@ def fit(
     """Fit the named parameters; the others keep the values of `oscillator`, driven as the record was.
 
     `noise` is the standard deviation of the read-out where it is known [m], or of the excesses of a table;
-    `free` are the numbers of the sensor that are fitted to a displacement.  InvalidValue is raised, in one
+    `free` are the numbers of the sensor that are fitted to a displacement.  NoAnswer is raised, in one
     sentence, for a record that cannot determine them.
     """
     require_names(names, oscillator)
     known = noise is not None or len(record.columns) == 4
     unit = noise or (letter.AMPLITUDE_STABILITY if record.kind == "transitions" else READ_OUT)
+    if record.kind == "displacement":
+        return _displacement(*sound(record, oscillator), tuple(names), free, unit, known)
     starts = predictions_of(record, oscillator, tuple(names), free)
-    problem, found = _best([Problem(one, begun, tuple(names), unit) for one, begun in starts], known)
+    return _solved(starts, tuple(names), oscillator, unit, known)
+
+
+def _solved(
+    starts: Sequence[tuple[Prediction, ImpactOscillator]],
+    names: tuple[str, ...],
+    oscillator: ImpactOscillator,
+    unit: float,
+    known: bool,
+) -> Fit:
+    """The best fit from these starts; it begins again where a profile finds a better one."""
+    problem, found = _best([Problem(one, at, names, unit) for one, at in starts], known)
     for _ in range(AGAIN):
-        result = _judged(problem, found, oscillator, known)
+        result = judged(problem, found, oscillator, known)
         walks, lowest = _walked(result)
         if lowest is None:
             break
         found = problem.solve(problem.unknowns_of(lowest.values))
     return replace(result, walks=walks)
+
+
+def _displacement(
+    record: Record,
+    oscillator: ImpactOscillator,
+    names: tuple[str, ...],
+    free: Sequence[str],
+    unit: float,
+    known: bool,
+) -> Fit:
+    """The best fit of a displacement: of a linear motion, of one that repeats, or of one that does not."""
+    given = names, oscillator, unit, known
+    linear, failure = Linear(record), None
+    found: Fit | None = None
+    try:
+        starts = [] if linear.likely else predictions_of(record, oscillator, names, free)
+        if starts:
+            found = _solved(starts, *given)
+        else:  # a linear motion, its stop far away while it is fitted
+            prediction, begun, own = linear.start(oscillator, names, free)
+            found = _solved([(prediction, begun)], own, *given[1:])
+            found = replace(found, oscillator=with_values(found.oscillator, {"gap": oscillator.stop.gap}))
+        if not found.too_small:
+            return found
+    except NoAnswer as error:
+        failure = error
+    times, x = record.rows.T
+    residuals = found.residuals[:, 0] if found else x - x.mean()
+    words = wanders(times, x, residuals, float(linear.frequency))
+    early = int(np.searchsorted(times, times[0] + SHORT / float(linear.frequency)))
+    for size in dict.fromkeys([len(x), early] if words else []):
+        linear.record = replace(record, rows=record.rows[:size])
+        with suppress(NoAnswer):
+            other = _solved(unsteady_starts(linear, oscillator, names, free), *given)
+            if not other.too_small:
+                rows = "" if size == len(x) else f" by the first {size} rows"
+                note = f"{words[0]}: the fit is one of a transient or a chaotic motion{rows}"
+                return replace(other, record=replace(other.record, notes=(*record.notes, note)))
+    if found is None:
+        raise failure or NoAnswer("no motion like the record's was found")
+    return found
 
 
 def _walked(found: Fit) -> tuple[dict[str, tuple[float, float]], Point | None]:
@@ -188,7 +154,7 @@ def _best(problems: Sequence[Problem], known: bool) -> tuple[Problem, Found]:
     """The problem that is solved best, and its solution: all are begun, the best that differ are finished."""
     rows = problems[0].observed.size
     if rows < problems[0].unknowns + (not known):
-        raise InvalidValue(
+        raise NoAnswer(
             f"the record has {rows} numbers, too short for {problems[0].unknowns} unknowns and their errors"
         )
     failure, begun = None, list[tuple[float, int, Array]]()
@@ -196,23 +162,30 @@ def _best(problems: Sequence[Problem], known: bool) -> tuple[Problem, Found]:
         first = _part(problem, 0)
         try:
             found = first.solve(problem.start, EARLY, ROUGH * first.freedom)
-            begun.append((float(np.sum(problem.residuals(found.x) ** 2)), i, found.x))
+            whole = problem if problem.prediction.period else first
+            begun.append((float(np.sum(whole.residuals(found.x) ** 2)), i, found.x))
         except (ContactError, Refusal) as error:
             failure = failure or error
     ends, tried = list[tuple[Problem, Found]](), list[Array]()
-    for _cost, i, unknowns in sorted(begun, key=lambda one: one[:2]):
+    for cost, i, unknowns in sorted(begun, key=lambda one: one[:2]):
         problem, values = problems[i], problems[i].values(unknowns)[problems[i].named]
         if len(ends) == FINISHED or any(np.allclose(values, other, rtol=SAME, atol=0.0) for other in tried):
             continue
         tried.append(values)
         try:
-            for k in range(1, len(problem.prediction.parts()) - 1):
-                unknowns = _part(problem, k).solve(unknowns).x
+            sizes = [len(part.record.rows) for part in problem.prediction.parts()]
+            for k, size in enumerate(sizes[1:-1], 1):
+                found = _part(problem, k).solve(unknowns)
+                if found.chi2 * sizes[0] > ASTRAY * cost * size:
+                    raise NoAnswer(f"the motion that is like the first {sizes[0]} rows is unlike later ones")
+                unknowns = found.x
             ends.append((problem, problem.solve(unknowns)))
         except (ContactError, Refusal) as error:
             failure = failure or error
     if not ends:
-        raise failure or InvalidValue("no motion like that of the record was found to start from")
+        if isinstance(failure, NoAnswer):
+            raise failure
+        raise NoAnswer(f"no motion like the record's was found to start from: {failure}")
     return min(ends, key=lambda end: end[1].chi2)
 
 
@@ -222,75 +195,3 @@ def _part(problem: Problem, number: int) -> Problem:
     if len(parts) == 1:
         return problem
     return Problem(parts[number], problem.oscillator, problem.names, problem.noise, LEASH)
-
-
-def _judged(problem: Problem, found: Found, oscillator: ImpactOscillator, known: bool) -> Fit:
-    """The fit that a solution is; InvalidValue if the record does not determine it."""
-    prediction, rows = problem.prediction, problem.observed.size
-    spread = 1.0 if known else float(np.sqrt(found.chi2 / problem.freedom))
-    names = problem.names + prediction.sensor
-    own = problem.named
-    lengths = np.linalg.norm(found.jac, axis=0)
-    lengths[lengths == 0.0] = 1.0
-    _left, singular, axes = np.linalg.svd(found.jac / lengths, full_matrices=False)
-    if (gain := found.left / spread**2) > SETTLED:
-        raise InvalidValue(
-            f"the fit has not settled after {MOST} steps: chi^2 would still fall by {gain:.2g}"
-        )
-    slopes, values = problem.slopes(found.x), problem.values(found.x)
-    sizes = np.where(problem.log, LOST * np.abs(values), np.maximum(np.abs(values), problem.sizes))
-    axes = axes / lengths @ slopes.T
-    if not singular[-1] > SINGULAR * singular[0]:
-        blind = _blind((axes / sizes)[:, own], names)
-        raise InvalidValue(f"the record cannot {blind}: fit fewer parameters or another record")
-    covariance = (axes.T / singular**2 @ axes * spread**2)[np.ix_(own, own)]
-    before = parameters_of(oscillator)
-    result = Fit(
-        record=prediction.record,
-        oscillator=problem.at(found.x)[0],
-        names=names,
-        start=problem.values(problem.start)[own],
-        before=np.array([before[name].value if name in before else SENSOR[name] for name in names]),
-        estimate=values[own],
-        covariance=covariance,
-        noise=spread * problem.noise,
-        noise_known=known,
-        freedom=problem.freedom,
-        residuals=(-found.fun[:rows] / problem.weights).reshape(prediction.record.observed.shape),
-        chance=_chance(found.fun[:rows], prediction, known, problem.freedom),
-        problem=problem,
-        unknowns=found.x,
-    )
-    share = result.errors / sizes[own]
-    if not result.too_small and np.any(share > 1.0):  # else `report` says so
-        worst, blind = names[int(np.argmax(share))], _blind((axes / sizes)[:, own], names)
-        blind = blind if worst in blind.split() else f"determine {worst}"
-        raise InvalidValue(f"the record cannot {blind}: the standard error of {worst} is above its value")
-    return result
-
-
-def _blind(axes: Array, names: Sequence[str]) -> str:
-    """The parameters of the last axis, which a record cannot separate or determine."""
-    share = np.abs(axes[-1])
-    blind = [name for name, part in zip(names, share, strict=True) if part > PART * share.max()]
-    return f"tell {' from '.join(blind)}" if len(blind) > 1 else f"determine {blind[0]}"
-
-
-def _chance(residuals: Array, prediction: Prediction, known: bool, freedom: int) -> float:
-    """Probability of residuals of this size or pattern from noise alone."""
-    found = [float(stats.chi2.sf(residuals @ residuals, freedom))] if known else []
-    kind, period = prediction.record.kind, prediction.period
-    if kind == "strobe":
-        rows = residuals.reshape(len(prediction.record.rows), -1)
-        means = np.array([rows[k::period].mean(axis=0) for k in range(period)])
-        within = float(np.sum((rows - means[np.arange(len(rows)) % period]) ** 2))
-        more, spare = freedom - residuals.size + means.size, residuals.size - means.size
-        if more > 0 and spare > 0:
-            ratio = (residuals @ residuals - within) / more / (within / spare)
-            found.append(float(stats.f.sf(ratio, more, spare)))
-    if kind == "displacement":
-        size, off = residuals.size, residuals - residuals.mean()
-        lagged = np.array([off[k:] @ off[:-k] for k in range(1, LAGS + 1)]) / (off @ off)
-        box = size * (size + 2) * np.sum(lagged**2 / (size - np.arange(1, LAGS + 1)))
-        found.append(float(stats.chi2.sf(box, LAGS)))
-    return min(1.0, len(found) * min(found)) if found else 1.0

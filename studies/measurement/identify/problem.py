@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import copy
 import math
+
 import numpy as np
 from numpy.typing import NDArray
+from scipy import stats
 
-from beam import InvalidValue, Refusal
+from beam import Refusal
 from contact import ContactError, ImpactOscillator
 from studies.measurement.identify.descent import Found, descend
 from studies.measurement.identify.predictions import Prediction
+from studies.measurement.identify.records import NoAnswer
 from studies.physics.parameters import parameters_of, with_values
 
 Array = NDArray[np.float64]
@@ -28,6 +31,9 @@ SETTLED = 0.1
 RANGES = {"decay_rate": (0.0, math.inf), "restitution": (0.0, 1.0)}
 """The parameters that may come close to an end of their range; there a logarithm would have no end."""
 
+LAGS = 10
+"""Number of lags in the autocorrelation of residuals."""
+
 RESPONSE, STEP = ("free_period", "decay_rate", "frequency"), 1e-6
 """The parameters that the response of the tip hangs on; a part of each, for differences of it."""
 
@@ -35,8 +41,8 @@ RESPONSE, STEP = ("free_period", "decay_rate", "frequency"), 1e-6
 class Problem:
     """Residuals and Jacobian in units of the noise, by unknowns u without units.
 
-    A parameter p that starts at p_0 > 0 has u = log(p/p_0), another one, and those of `RANGES`, u = p/size: no
-    search leaves the physical range.  Where amplitude Z and phase of the drive are both fitted, theirs
+    A parameter p that starts at p_0 > 0 has u = log(p/p_0), another one, and those of `RANGES`, u = p/size:
+    no search leaves the physical range.  Where amplitude Z and phase of the drive are both fitted, theirs
     are those of the steady motion Y = Z exp(i phase) R of the tip, R its response to the base: near a
     resonance the record determines Y, and hardly Z.  The further unknowns are held by their prior, the
     parameters by a `leash`: a standard deviation of u about where it starts.
@@ -141,10 +147,10 @@ class Problem:
         return np.concatenate([off, (unknowns - self.middle) * self.held])
 
     def jacobian(self, unknowns: Array) -> Array:
-        """Shape (rows + unknowns, unknowns); InvalidValue if it is not finite."""
+        """Shape (rows + unknowns, unknowns); NoAnswer if it is not finite."""
         rows = self.prediction.jacobian(*self.at(unknowns), self.names) * self.weights[:, None]
         if not np.all(np.isfinite(rows)):
-            raise InvalidValue("the motion hangs too sensitively on where it begins")
+            raise NoAnswer("the motion hangs too sensitively on where it begins")
         return np.vstack([rows @ self.slopes(unknowns), np.diag(self.held)])
 
     def of(self, prediction: Prediction) -> Problem:
@@ -154,16 +160,35 @@ class Problem:
         return found
 
     def solve(self, start: Array, most: int = MOST, gain: float = GAIN) -> Found:
-        """The best fit from `start`, in so many steps at `most`, until a step lowers chi^2 by no more than `gain`
-        times the noise's variance."""
+        """The best fit from `start`, in so many steps at `most`, until a step lowers chi^2 by no more than
+        `gain` times the noise's variance."""
         if not np.all(np.isfinite(self.residuals(start))):
-            raise InvalidValue("no motion like the record's was found to start from")
-        variance = 1.0 / self.freedom
+            raise NoAnswer("no motion like the record's was found to start from")
         return descend(
             self.residuals,
             self.jacobian,
             start,
             self.bounds,
             most=most,
-            enough=lambda chi2: gain * chi2 * variance,
+            enough=lambda chi2: gain * chi2 / self.freedom,
         )
+
+
+def chance_of(residuals: Array, prediction: Prediction, known: bool, freedom: int) -> float:
+    """Probability of residuals of this size or pattern from noise alone."""
+    found = [float(stats.chi2.sf(residuals @ residuals, freedom))] if known else []
+    kind, period = prediction.record.kind, prediction.period
+    if kind == "strobe":
+        rows = residuals.reshape(len(prediction.record.rows), -1)
+        means = np.array([rows[k::period].mean(axis=0) for k in range(period)])
+        within = float(np.sum((rows - means[np.arange(len(rows)) % period]) ** 2))
+        more, spare = freedom - residuals.size + means.size, residuals.size - means.size
+        if more > 0 and spare > 0:
+            ratio = (residuals @ residuals - within) / more / (within / spare)
+            found.append(float(stats.f.sf(ratio, more, spare)))
+    if kind == "displacement":
+        size, off = residuals.size, residuals - residuals.mean()
+        lagged = np.array([off[k:] @ off[:-k] for k in range(1, LAGS + 1)]) / (off @ off)
+        box = size * (size + 2) * np.sum(lagged**2 / (size - np.arange(1, LAGS + 1)))
+        found.append(float(stats.chi2.sf(box, LAGS)))
+    return min(1.0, len(found) * min(found)) if found else 1.0

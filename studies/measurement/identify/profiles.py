@@ -1,7 +1,7 @@
 """Profile likelihood: what a fit becomes with one parameter held, and how far it may be moved.
 
-With p held at a value all others are fitted again; the rise of chi^2 over the noise's variance is r^2.  The 90 %
-interval ends where r is the `reach`, 1.645 or Student's t for it.  A refit begins at the nearest one, and the
+With p held at a value all others are fitted again; chi^2 rises by r^2 in units of the noise's variance.  The
+90 % interval ends where r is the `reach`, 1.645 or Student's t for it.  A refit begins at the last one, and the
 value moves on by the secant of r.  A refit that has not settled is not believed: a shorter step follows.
 """
 
@@ -26,7 +26,7 @@ REFITS, FEW, NEAR = 16, 30, 0.15
 """Most refits to a side, and the steps of each; distance of the last r from the reach, as a part of it."""
 
 GROW, SHRINK, WILD = 4.0, 0.3, 1e4
-"""Longest step over the last one; what follows a step that fails; rise of chi^2 where a refit does not begin."""
+"""Longest step over the last one; what follows a step that fails; rise of chi^2 where no refit begins."""
 
 FAR = 0.25
 """Part of the reach from which on a walk that comes to a halt is continued by a line."""
@@ -52,8 +52,8 @@ class Profile:
 
 @dataclass(frozen=True, eq=False)
 class Point:
-    """A parameter held `away` standard errors from the best: the `rise` of chi^2 in the noise's variance, the
-    `values` of all unknowns, their change with one more standard error (`along`), and the prediction there."""
+    """A parameter held `away` standard errors from the best: the `rise` of chi^2 in the noise's variance,
+    the `values` of all unknowns, their change with one more standard error (`along`), and the prediction there."""
 
     away: float
     rise: float

@@ -62,7 +62,7 @@ class Record:
     """A record: its `columns`, `rows` of shape (n_rows, n_columns), and the drive where it is known.
 
     `frequency` [Hz] and `amplitude` [m] are None where the record has no such line; `origin` [s] is what was
-    subtracted from its times.
+    subtracted from its times; `notes` say what was changed of it for a fit.
     """
 
     columns: tuple[str, ...]
@@ -70,6 +70,7 @@ class Record:
     frequency: float | None = None
     amplitude: float | None = None
     origin: float = 0.0
+    notes: tuple[str, ...] = ()
 
     @property
     def kind(self) -> Kind:

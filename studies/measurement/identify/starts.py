@@ -18,12 +18,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
-from beam import InvalidValue, Refusal
+from beam import Refusal
 from contact import ContactError, ImpactOscillator, SingleImpactOrbit, State, simulate
 from studies.measurement.identify.displacement import SENSOR, Displacement
 from studies.measurement.identify.kicks import Kicked, kicked_motions
 from studies.measurement.identify.predictions import Prediction, Strobes, Transitions, family_of
-from studies.measurement.identify.records import Record
+from studies.measurement.identify.records import NoAnswer, Record
+from studies.measurement.identify.soundness import require_strobe_units, require_units
 from studies.physics.parameters import parameters_of, with_values
 
 Array = NDArray[np.float64]
@@ -66,31 +67,33 @@ def predictions_of(
     names: Sequence[str],
     free: Sequence[str] = ("phase", "offset"),
 ) -> Sequence[tuple[Prediction, ImpactOscillator]]:
-    """Predictions of the rows and the starts of their fits, the best first; InvalidValue for a poor record.
+    """Predictions of the rows and the starts of their fits, the best first; NoAnswer for a poor record.
 
+    There are none of a displacement without impacts.
     `free` are the numbers of the sensor that are fitted to a displacement.
     """
     if record.kind == "transitions":
         return [(Transitions(record), oscillator)]
     if record.kind == "strobe":
+        require_strobe_units(record, oscillator)
         return [_strobes(record, oscillator, names)]
     return _displacement(record, oscillator, names, free)
 
 
 def repetition(record: Record) -> int:
-    """The period of strobe points in drive periods; ValueError if they do not repeat or have no impact."""
+    """The period of strobe points in drive periods; NoAnswer if they do not repeat or have no impact."""
     rows = record.observed[:, 0]
     most = min(LONGEST, len(rows) // 2)
     off = np.array([np.sqrt(np.mean((rows[m:] - rows[:-m]) ** 2)) for m in range(1, most + 1)])
     period = int(np.argmax(off <= ALIKE * off.min())) + 1
     if rows.std() < FLAT * np.abs(rows).max():
-        raise InvalidValue("the strobe points stay where they are: there is no impact in the record")
+        raise NoAnswer("the strobe points stay where they are: there is no impact in the record")
     if off[period - 1] > SIMILAR * rows.std():
-        raise InvalidValue(
+        raise NoAnswer(
             f"the record is too short, or its strobe points do not repeat: no period up to {most} rows"
         )
     if period == 1:
-        raise InvalidValue("the strobe points repeat after one drive period: no sign of an impact")
+        raise NoAnswer("the strobe points repeat after one drive period: no sign of an impact")
     return period
 
 
@@ -99,7 +102,7 @@ def _strobes(
 ) -> tuple[Strobes, ImpactOscillator]:
     period, size = repetition(record), float(record.observed[:, 0].std())
     if (told := period * record.observed.shape[1]) < len(names):
-        raise InvalidValue(f"p{period} gives {told} numbers, which cannot tell {len(names)} parameters")
+        raise NoAnswer(f"p{period} gives {told} numbers, which cannot tell {len(names)} parameters")
 
     def near(at: ImpactOscillator, most: float) -> Strobes | None:
         """The orbit at the drive of this oscillator, if it is off by less than this part of the record."""
@@ -119,7 +122,7 @@ def _strobes(
         begun = orbit.oscillator if "amplitude" in names else begun
         found = near(begun, SIMILAR)
     if found is None:
-        raise InvalidValue(
+        raise NoAnswer(
             f"no p{period} with one impact was found near the record: give better values of what is not "
             "fitted, or fit more"
         )
@@ -152,9 +155,7 @@ def _searched(
     costs = np.array([np.sum(off(start) ** 2) for start in starts])
     best = [starts[i] for i in np.argsort(costs)[:3] if np.isfinite(costs[i])]
     if not best:
-        raise InvalidValue(
-            f"the scene has no p{period} with one impact at {oscillator.driven.frequency:g} Hz"
-        )
+        raise NoAnswer(f"the scene has no p{period} with one impact at {oscillator.driven.frequency:g} Hz")
     found = [least_squares(off, start, max_nfev=30, x_scale="jac") for start in best]
     return orbit_at(min(found, key=lambda one: one.cost).x)
 
@@ -163,23 +164,25 @@ def _displacement(
     record: Record, oscillator: ImpactOscillator, names: Sequence[str], free: Sequence[str]
 ) -> Sequence[tuple[Prediction, ImpactOscillator]]:
     times, x = record.rows.T
-    if record.frequency is not None and (times[-1] - times[0]) * record.frequency < 2.0:
-        raise InvalidValue("the record is too short: it must be two drive periods long at least")
     motions = kicked_motions(times, x, oscillator, record.frequency)
     if motions[0].without - motions[0].cost < SEEN:
-        raise InvalidValue("there is no impact in the record")
+        return []
     likely = [one for one in motions if one.reading()["gap"] > 0.0 and one.steady != 0.0]
     if not likely:
-        raise InvalidValue("the record repeats, but not as a motion with impacts at one gap")
+        raise NoAnswer("the record repeats, but not as a motion with impacts at one gap")
+    at, gap, steady = likely[0].oscillator, likely[0].reading()["gap"], likely[0].steady
+    lengths = {"gap": gap, "amplitude": 2.0 * abs(steady / at.tip_response())}
+    period = {"free_period": parameters_of(at)["free_period"].value}
+    require_units(record, oscillator, period if "scale" in free else lengths | period)
     likely = [one for one in likely if one.cost < WORSE * likely[0].cost + SEEN][:TRIED]
     return [
         one
         for i, motion in enumerate(likely)
-        for one in _starts(record, motion, oscillator, names, free, few=i > 0)
+        for one in starts_at(record, motion, oscillator, names, free, few=i > 0)
     ]
 
 
-def _starts(
+def starts_at(
     record: Record,
     motion: Kicked,
     oscillator: ImpactOscillator,
@@ -187,23 +190,26 @@ def _starts(
     free: Sequence[str],
     few: bool,
 ) -> list[tuple[Displacement, ImpactOscillator]]:
-    """Starts at a kicked motion, with several values of what it does not show of the contact, or `few`; and at
-    the given values."""
+    """Starts at a kicked motion, with several values of what it does not show of the contact, or `few`;
+    and at the given values."""
     at, read = motion.oscillator, motion.reading()
     sign, read["restitution"] = read["sign"], min(max(read["restitution"], 0.01), 0.99)
+    known = parameters_of(oscillator)
     drive = 2j * motion.steady * sign / at.tip_response()
+    held = [name for name in ("gap", "amplitude") if name not in names and "scale" in free]
+    size = ({"gap": read["gap"], "amplitude": abs(drive)}[held[0]] / known[held[0]].value) if held else 1.0
+    read["gap"], drive = read["gap"] / size, drive / size
     phase = float(np.angle(drive))
     told = {name: one.value for name, one in parameters_of(at).items()} | read | {"amplitude": abs(drive)}
-    known = parameters_of(oscillator)
     soft = [name for name in ("stiffness", "delay") if name in names]
-    sensor = dict(SENSOR) | {"offset": motion.offset, "phase": phase, "scale": sign}
+    sensor = dict(SENSOR) | {"offset": motion.offset, "phase": phase, "scale": sign * size}
     sensor = {name: sensor[name] if name in free or name == "scale" else SENSOR[name] for name in sensor}
     lasting = motion.period * at.period
     clock = np.linspace(0.0, lasting, LOOKED, endpoint=False)
     away = sensor["phase"] / at.driven.angular_frequency
     heights = [sign * motion.tip(t - away)[0] for t in clock]
     lowest = float(clock[int(np.argmin(heights))])
-    start = sign * np.add(*motion.state(lowest - away))
+    start = sign / size * np.add(*motion.state(lowest - away))
     law = {name: known[name].value for name in ("restitution", *soft) if name in names}
     begun = with_values(oscillator, {n: told[n] for n in names if n in told and n in known and n not in soft})
     others: list[dict[str, float]] = [{}, law]
@@ -213,19 +219,20 @@ def _starts(
         others = [{}]
     elif "restitution" in law:
         others += [{"restitution": part} for part in RESTITUTIONS]
-    at = [with_values(begun, other) for other in others]
-    held = with_values(oscillator, {"frequency": begun.driven.frequency})
+    tried = [with_values(begun, other) for other in others]
+    given = [with_values(oscillator, {"frequency": begun.driven.frequency})]
+    given = [] if few or not oscillator.driven.amplitude else given
     return [
         (Displacement(record, one, start, sensor, free, period=motion.period, clock=lowest), one)
-        for one in [*(_behind(one, start, lowest, lasting) for one in at), *([] if few else [held])]
+        for one in [*(_behind(one, start, lowest, lasting) for one in tried), *given]
     ]
 
 
 def _behind(oscillator: ImpactOscillator, start: Array, clock: float, lasting: float) -> ImpactOscillator:
     """The oscillator with the gap at which a kick in the middle of a contact is this contact.
 
-    A kicked tip goes on at its approach velocity v until the middle of a contact of duration d: to v d/2 beyond
-    the stop.
+    A kicked tip goes on at its approach velocity v until the middle of a contact of duration d: to v d/2
+    beyond the stop.
     """
     state = State(displacement=start[0], velocity=start[1], time=clock)
     try:

@@ -1,0 +1,167 @@
+"""A fit: parameters, errors, correlations and intervals, and whether the record determines them.
+
+    covariance  s^2 (J^T J)^-1,   s^2 = 1 where the noise is known, else chi^2/(n - number of unknowns).
+
+90 % intervals are those of Student's t about the unknowns of the fit, or of a profile of the likelihood.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import stats
+from scipy.special import expit, logit
+
+from contact import ImpactOscillator
+from studies.measurement.identify.descent import Found
+from studies.measurement.identify.displacement import SENSOR
+from studies.measurement.identify.problem import MOST, SETTLED, Problem, chance_of
+from studies.measurement.identify.profiles import Walk
+from studies.measurement.identify.records import NoAnswer, Record
+from studies.physics.parameters import parameters_of
+
+Array = NDArray[np.float64]
+
+LEVEL = 0.90
+"""Probability of the intervals."""
+
+SINGULAR = 1e-8
+"""Ratio of singular values below which the record does not depend on a direction of the parameters."""
+
+TOO_SMALL = 1e-3
+"""Probability of such residuals from noise alone, below which the model is called too small."""
+
+PART, LOST = 0.3, 2.0
+"""Part of the largest from which a parameter takes part in a direction that is not determined; standard error
+of a logarithm above which its parameter is not determined."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Fit:
+    """A fit; arrays by `names`, parameters and then numbers of the sensor, in SI units.
+
+    `before` has the values before the record was looked at, `start` those at the start of the fit.
+
+    `noise`: standard deviation of x [m], or of an excess in units of its error; `freedom`: rows less
+    unknowns; `residuals`: observed less predicted, shape of the record's `observed`; `chance`: probability of
+    residuals of such size or pattern from noise alone; `problem` and `unknowns`: what was solved; `walks`:
+    the intervals of the parameters along which chi^2 is no parabola, by its profile.
+    """
+
+    record: Record
+    oscillator: ImpactOscillator
+    names: tuple[str, ...]
+    before: Array
+    start: Array
+    estimate: Array
+    covariance: Array
+    noise: float
+    noise_known: bool
+    freedom: int
+    residuals: Array
+    chance: float
+    problem: Problem
+    unknowns: Array
+    walks: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+
+    @property
+    def errors(self) -> Array:
+        """Standard errors; of a parameter with a profile those that would give its interval."""
+        found = np.sqrt(np.diag(self.covariance))
+        for name, (low, high) in self.walks.items():
+            found[self.names.index(name)] = (high - low) / (2.0 * self.reach)
+        return np.asarray(found)
+
+    @property
+    def correlations(self) -> Array:
+        """Shape (n, n)."""
+        errors = np.sqrt(np.diag(self.covariance))
+        return self.covariance / np.outer(errors, errors)
+
+    def walk(self, name: str) -> Walk:
+        """The likelihood along a parameter."""
+        variance, i = (self.noise / self.problem.noise) ** 2, self.names.index(name)
+        error = float(np.sqrt(self.covariance[i, i]))
+        return Walk(self.problem, self.unknowns, error, variance, name)
+
+    @property
+    def too_small(self) -> bool:
+        """Whether the residuals are unlike noise: the model is too small for the record."""
+        return self.chance < TOO_SMALL
+
+    @property
+    def reach(self) -> float:
+        """Half a 90 % interval in standard errors, by Student's t; the normal law's if noise is known."""
+        tail = 0.5 + 0.5 * LEVEL
+        return float(stats.norm.ppf(tail) if self.noise_known else stats.t.ppf(tail, self.freedom))
+
+    def intervals(self) -> Array:
+        """Lower and upper ends, shape (n, 2), within the physical range.
+
+        They are those of the unknowns of the problem, of a restitution r those of log(r/(1 - r)).
+        """
+        log = self.problem.log[self.problem.named]
+        wide = self.reach * np.sqrt(np.diag(self.covariance))
+        found = self.estimate[:, None] + np.outer(wide, [-1.0, 1.0])
+        factor = np.exp(wide[log] / self.estimate[log])
+        found[log] = self.estimate[log, None] * np.column_stack([1.0 / factor, factor])
+        for i, name in enumerate(self.names):
+            if name == "restitution" and 0.0 < (r := self.estimate[i]) < 1.0:
+                part = wide[i] / (r * (1.0 - r))
+                found[i] = expit(logit(r) + np.array([-part, part]))
+            found[i] = self.walks.get(name, found[i])
+        return np.asarray(found)
+
+
+def judged(problem: Problem, found: Found, oscillator: ImpactOscillator, known: bool) -> Fit:
+    """The fit that a solution is; NoAnswer if the record does not determine it."""
+    prediction, rows = problem.prediction, problem.observed.size
+    spread = 1.0 if known else float(np.sqrt(found.chi2 / problem.freedom))
+    names, own = problem.names + prediction.sensor, problem.named
+    chance = chance_of(found.fun[:rows], prediction, known, problem.freedom)
+    lengths = np.linalg.norm(found.jac, axis=0)
+    lengths[lengths == 0.0] = 1.0
+    _left, singular, axes = np.linalg.svd(found.jac / lengths, full_matrices=False)
+    gain = found.left / spread**2
+    if gain > SETTLED and chance > TOO_SMALL:  # else the model is too small
+        raise NoAnswer(f"the fit has not settled after {MOST} steps: chi^2 would still fall by {gain:.2g}")
+    slopes, values = problem.slopes(found.x), problem.values(found.x)
+    sizes = np.where(problem.log, LOST * np.abs(values), np.maximum(np.abs(values), problem.sizes))
+    axes = axes / lengths @ slopes.T
+    if not singular[-1] > SINGULAR * singular[0]:
+        blind = _blind((axes / sizes)[:, own], names)
+        raise NoAnswer(f"the record cannot {blind}: fit fewer parameters or another record")
+    covariance = (axes.T / singular**2 @ axes * spread**2)[np.ix_(own, own)]
+    before = parameters_of(oscillator)
+    result = Fit(
+        record=prediction.record,
+        oscillator=problem.at(found.x)[0],
+        names=names,
+        start=problem.values(problem.start)[own],
+        before=np.array([before[name].value if name in before else SENSOR[name] for name in names]),
+        estimate=values[own],
+        covariance=covariance,
+        noise=spread * problem.noise,
+        noise_known=known,
+        freedom=problem.freedom,
+        residuals=(-found.fun[:rows] / problem.weights).reshape(prediction.record.observed.shape),
+        chance=chance,
+        problem=problem,
+        unknowns=found.x,
+    )
+    share = result.errors / sizes[own]
+    if not result.too_small and np.any(share > 1.0):  # else `report` says so
+        worst, blind = names[int(np.argmax(share))], _blind((axes / sizes)[:, own], names)
+        blind = blind if worst in blind.split() else f"determine {worst}"
+        raise NoAnswer(f"the record cannot {blind}: the standard error of {worst} is above its value")
+    return result
+
+
+def _blind(axes: Array, names: Sequence[str]) -> str:
+    """The parameters of the last axis, which a record cannot separate or determine."""
+    share = np.abs(axes[-1])
+    blind = [name for name, part in zip(names, share, strict=True) if part > PART * share.max()]
+    return f"tell {' from '.join(blind)}" if len(blind) > 1 else f"determine {blind[0]}"

@@ -1,0 +1,80 @@
+"""Whether a record can answer, and whether the given values are in its units; before any search."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from beam import InvalidValue
+from contact import ImpactOscillator
+from studies.measurement.identify.diagnosis import defects, drive_found, unit_of
+from studies.measurement.identify.records import NoAnswer, Record
+from studies.physics.parameters import parameters_of, with_values
+
+MOST, DENSE = 20_000, 40
+"""Rows of a displacement that are fitted at most; rows a drive period that are left of more."""
+
+OFF, APART, BEYOND, UNLIKE = 0.01, 100.0, 10.0, 2.0
+"""Part by which the given drive frequency may be off. Ratio of two lengths that may be one of units; of the
+largest strobe point to the gap; of two amplitudes that contradict each other (clamped beams: 1.57)."""
+
+
+def sound(record: Record, oscillator: ImpactOscillator) -> tuple[Record, ImpactOscillator]:
+    """The rows of a displacement that are fitted, and the oscillator at the drive that they show.
+
+    NoAnswer is raised for defects, InvalidValue for a drive of another record; `notes` say what was changed.
+    """
+    (times, x), given = record.rows.T, record.frequency
+    if faults := defects(times, x, given):
+        raise NoAnswer(f"the record has no answer: {'; '.join(faults)}")
+    if given and (other := drive_found(times, x, given)):
+        if abs(given / other[0] - 1.0) > OFF:
+            raise InvalidValue(other[1])
+        record = replace(record, frequency=other[0], notes=(f"{other[1]}, where the fit begins",))
+        oscillator = with_values(oscillator, {"frequency": other[0]})
+    if (rows := times.size) > MOST:
+        dense = float(rows / ((times[-1] - times[0]) * (record.frequency or oscillator.driven.frequency)))
+        step = max(1, min(-(-rows // MOST), int(dense / DENSE)))
+        record = replace(record, rows=record.rows[::step][:MOST])
+        note = (
+            f"1 row in {step} of {rows} is fitted, up to {record.rows[-1, 0]:.6g} s: {len(record.rows)} rows"
+        )
+        record = replace(record, notes=(*record.notes, note))
+    return record, oscillator
+
+
+def require_units(record: Record, oscillator: ImpactOscillator, found: Mapping[str, float]) -> None:
+    """InvalidValue if a thousand or a million is between given values and the ones `found` in the record."""
+    length = "amplitude" if record.amplitude else "gap"
+    for name in [one for one in (length, "free_period") if one in found]:
+        value = parameters_of(oscillator)[name].value
+        apart = max(value, found[name]) > APART * min(value, found[name])
+        if apart and (words := unit_of(found[name], value, name)):
+            unit = "s" if name == "free_period" else "m"
+            both = f"{found[name]:.4g} {unit} by the record, {value:.4g} {unit} as given"
+            raise InvalidValue(f"{name} is {both}: {words}")
+
+
+def require_strobe_units(record: Record, oscillator: ImpactOscillator) -> None:
+    """InvalidValue if strobe points are far beyond the stop, or the amplitude is far from grazing."""
+    farthest, gap = float(np.abs(record.observed[:, 0]).max()), oscillator.stop.gap
+    if farthest > BEYOND * gap:
+        words = unit_of(1e3 if farthest < 3e4 * gap else 1e6, 1.0, "x_m")
+        raise InvalidValue(f"x_m reaches {farthest:.4g} m, where the gap is {gap:.4g} m: {words}")
+    given, least = record.amplitude or 0.0, oscillator.grazing_amplitude()
+    if given > APART * least or 0.0 < given < least / APART:
+        raise InvalidValue(
+            f"the given amplitude is {given:.4g} m, but the tip meets the stop from {least:.4g} m on: "
+            "--drive takes Hz and mm"
+        )
+
+
+def notes_of(record: Record, amplitude: float | None) -> list[str]:
+    """What was changed of a record, and whether the fitted amplitude contradicts the given one."""
+    given, found = record.amplitude, list(record.notes)
+    if given and amplitude and not 1.0 / UNLIKE < amplitude / given < UNLIKE:
+        both = f"{1e3 * amplitude:.4g} mm contradicts the given {1e3 * given:.4g} mm"
+        found.append(f"the fitted amplitude of {both}")
+    return found

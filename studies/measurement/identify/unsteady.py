@@ -1,0 +1,78 @@
+"""Starts of a motion that does not repeat: a transient, or chaos.
+
+Rows of chaos that nearly repeat after m drive periods are next to an unstable orbit, and give its kicks
+(close returns: Auerbach et al., Phys. Rev. Lett. 58 (1987) 2387).  The motion begins with the first flight.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contact import ImpactOscillator
+from studies.measurement.identify.displacement import Displacement
+from studies.measurement.identify.kicks import Search, kicked_motions, poles
+from studies.measurement.identify.linear import Linear
+from studies.measurement.identify.starts import TRIED, starts_at
+from studies.physics.parameters import with_values
+
+Array = NDArray[np.float64]
+
+BELOW, SHORT, EARLY = 0.98, 0.3, 3.0
+"""Gaps below which a row is off the stop; drive periods that show a state at least, that are fitted first."""
+
+FINE, LONGEST_RETURN = 64, 9
+"""Rows a drive period, and drive periods, between which a record is compared with itself."""
+
+
+def unsteady_starts(
+    linear: Linear, oscillator: ImpactOscillator, names: Sequence[str], free: Sequence[str]
+) -> list[tuple[Displacement, ImpactOscillator]]:
+    """Starts of a motion that does not repeat, at the first row off the stop, from kicked and linear ones.
+
+    Its state there is that of the steady motion and of mode 1, as the rows until the first impact show it.
+    """
+    record = linear.record
+    times, x, found = *record.rows.T, list[tuple[Displacement, ImpactOscillator]]()
+    motions = kicked_motions(times, x, oscillator, record.frequency)
+    part, period = close_return(times, x, float(linear.frequency))
+    at = with_values(oscillator, {"frequency": float(linear.frequency)})
+    motions += Search(times[part], x[part], at, period).found()
+    likely = [one for one in motions if one.reading()["gap"] > 0.0 and one.steady != 0.0]
+    pairs = [pair for one in likely[:TRIED] for pair in starts_at(record, one, oscillator, names, free, True)]
+    for steady, at in pairs:
+        sensor, model, w = steady.reading(steady.extra), at.model, at.driven.angular_frequency
+        tip = (x - sensor["offset"]) / sensor["scale"]
+        below = tip < BELOW * at.stop.gap
+        begin = int(np.argmax(below))
+        least = int(np.searchsorted(times, times[begin] + SHORT * at.period))
+        end = max(least, begin + int(np.argmin(np.append(below[begin:], False))))
+        turn = at.driven.amplitude * np.exp(1j * (w * times[begin:end] + sensor["phase"]))
+        pole = poles(at)[model.leading_mode]
+        wave = np.exp(pole * (times[begin:end] - times[begin]))
+        off = tip[begin:end] - (at.tip_response() * turn).imag
+        a, b = np.linalg.lstsq(np.array([wave.real, -wave.imag]).T, off, rcond=None)[0]
+        own = np.eye(model.n_modes)[model.leading_mode] / model.phi * complex(a, b)
+        share = at.steady_response() * turn[0]
+        state = np.append(share.imag + own.real, (1j * w * share).imag + (pole * own).real)
+        rest = replace(record, rows=record.rows[begin:])
+        first = int(np.searchsorted(rest.rows[:, 0], times[begin] + EARLY * at.period))
+        found.append((Displacement(rest, at, state, sensor, free, first=first), at))
+    return found
+
+
+def close_return(times: Array, x: Array, frequency: float) -> tuple[slice, int]:
+    """Rows that nearly repeat after some drive periods, and how many: they are next to an orbit."""
+    pace, best = FINE * frequency, (math.inf, 0, 0)
+    even = np.interp(np.arange(times[0], times[-1], 1.0 / pace), times, x)
+    for period in range(2, max(3, min(LONGEST_RETURN, even.size // FINE - 1))):
+        off = (even[FINE * period :] - even[: -FINE * period]) ** 2
+        near = np.convolve(off, np.ones(FINE), "valid")
+        best = min(best, (float(near.min()), period, int(np.argmin(near))))
+    _, period, row = best
+    ends = times[0] + np.array([row, row + (period + 1) * FINE]) / pace
+    return slice(*np.searchsorted(times, ends).tolist()), period
