@@ -18,7 +18,7 @@ from studies.measurement.identify import next_measurement
 from studies.measurement.identify.displacement import SENSOR, UNITS
 from studies.measurement.identify.estimates import Estimate
 from studies.measurement.identify.fit import fit
-from studies.measurement.identify.profiles import profile
+from studies.measurement.identify.profiles import rows_of
 from studies.measurement.identify.records import NoAnswer, read_record, synthetic
 from studies.measurement.identify.starts import predictions_of, repetition
 from studies.physics.parameters import ALIASES, fitted_scene, parameters_of, with_values
@@ -102,9 +102,13 @@ def test_restitution_and_delay_trade_off_and_the_profile_shows_it(made):
     waiting, names = made["waiting"], (*NAMES, "delay")
     found = fit(synthetic("displacement", waiting, seed=3), waiting, names)
     assert found.correlations[3, 4] > 0.95
-    rows = profile(found, "delay", "restitution", points=5, reach=1.0)
+    walk = found.walk("delay")
+    sides = [walk.side(way * found.reach) for way in (-1.0, 1.0)]
+    rows = rows_of(walk, [point for points, _ in sides for point in points], "restitution")
     depth = np.array([row.depth for row in rows])
-    assert depth[2] == pytest.approx(0.0, abs=1e-6) and depth[[0, -1]] == pytest.approx(1.0, abs=0.3)
+    assert depth.min() == 0.0 and depth[[0, -1]] == pytest.approx(found.reach**2, rel=0.35)
+    ends = found.estimate[4] + np.array([-1.0, 1.0]) * found.reach * found.errors[4]
+    assert [end for _, end in sides] == pytest.approx(ends, rel=0.05)
     slope = np.polyfit([row.value for row in rows], [row.other_value for row in rows], 1)[0]
     assert slope == pytest.approx(found.covariance[3, 4] / found.covariance[4, 4], rel=0.05)
 

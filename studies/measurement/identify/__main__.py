@@ -260,7 +260,7 @@ def answered(one: Fit) -> Fit:
     """The fit; NoAnswer with the best values if its residuals are unlike noise."""
     if not one.too_small:
         return one
-    best = ", ".join(f"{row.parameter} {row.value}" for row in estimates_of("", one, ()))
+    best = ", ".join(f"{row.parameter} {row.value}" for row in estimates_of("", one))
     raise NoAnswer(f"{reason(one)}; the best values found are {best}, with errors that mean little")
 
 

@@ -28,13 +28,16 @@ DAMPING, LESS, MORE, STUCK = 1e-3, 0.2, 3.0, 1e12
 """The damping at first, its factors after a step that is taken and one that is not, and where no step is
 short enough."""
 
+SEEN = 1e-8
+"""Ratio of singular values below which the residuals do not depend on a direction of the unknowns."""
+
 INSIDE = 1e-9
 """Part of a unit by which a bounded unknown stays off its bound."""
 
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """The end of a search: unknowns `x`, residuals `fun`, their derivatives `jac`; chi^2 may fall by `left`."""
+    """The end of a search: unknowns, residuals, their derivatives, and the fall of chi^2 that is `left`."""
 
     x: Array
     fun: Array
@@ -69,7 +72,7 @@ def descend(
         downhill = -(j.T @ r)
         free = ~(((u <= low) & (downhill < 0.0)) | ((u >= high) & (downhill > 0.0)))
         q, triangle = np.linalg.qr(j[:, free])
-        left = float(np.sum((q.T @ r) ** 2))
+        left = _left(triangle, q.T @ r)
         if left < enough(float(r @ r)):
             break
         scale = np.maximum(scale, np.linalg.norm(j, axis=0))
@@ -98,6 +101,13 @@ def descend(
         (u, r), damping = taken, damping * LESS
         j = jacobian(u)
     else:
-        q = np.linalg.qr(j)[0]
-        left = float(np.sum((q.T @ r) ** 2))
+        q, triangle = np.linalg.qr(j)
+        left = _left(triangle, q.T @ r)
     return Found(u, r, j, left)
+
+
+def _left(triangle: Array, rest: Array) -> float:
+    """The part of chi^2 along the directions that the unknowns move the residuals in."""
+    lengths = np.linalg.norm(triangle, axis=0)
+    axes, singular, _ = np.linalg.svd(triangle / np.where(lengths > 0.0, lengths, 1.0))
+    return float(np.sum((axes[:, singular > SEEN * singular[0]].T @ rest) ** 2))

@@ -28,7 +28,7 @@ from __future__ import annotations
 import copy
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,8 +37,8 @@ from beam import InvalidValue
 from contact import ImpactKind, ImpactOscillator, State, Trajectory, simulate
 from contact.orbits import motion_derivatives
 from studies.measurement.identify.predictions import Prediction
-from studies.measurement.identify.records import Record
-from studies.physics.parameters import changes_of
+from studies.measurement.identify.records import NoAnswer, Record
+from studies.physics.parameters import changes_of, parameters_of
 
 Array = NDArray[np.float64]
 
@@ -48,8 +48,9 @@ PRIOR = 0.01
 CLOSED, STEPS = 1e-10, 12
 """Last step of Newton's method on an orbit, in gaps at the tip, and the most steps; four are usual."""
 
-FAR = 1.0
-"""A step of Newton's method that leads nowhere, in gaps at the tip."""
+FAR, SLOW = 1.0, 0.3
+"""A step of Newton's method that leads nowhere, in gaps at the tip; least gain by a step with derivatives of
+another orbit."""
 
 FEW, GROWTH = 1500, 1.2
 """Rows with which a search begins; factor by which the rows of a motion that does not repeat grow: in chaos a
@@ -60,6 +61,29 @@ SENSOR: Mapping[str, float] = {"phase": 0.0, "offset": 0.0, "scale": 1.0}
 [rad], the reading at equilibrium [m], the reading per displacement [1]."""
 
 UNITS = {"phase": "rad", "offset": "m", "scale": "1"}
+
+
+@dataclass
+class Orbit:
+    """The last orbit that was accepted: its `state` at the clock, (1 - Phi)^-1, and how the state follows the
+    parameters of these names from their values there."""
+
+    state: Array
+    inverse: Array | None = None
+    names: tuple[str, ...] = ()
+    values: Array = field(default_factory=lambda: np.empty(0))
+    follow: Array = field(default_factory=lambda: np.empty((0, 0)))
+
+    def at(self, oscillator: ImpactOscillator) -> Array:
+        """The state with other parameters, to first order."""
+        if not self.names:
+            return self.state
+        return self.state + self.follow @ (_values(oscillator, self.names) - self.values)
+
+
+def _values(oscillator: ImpactOscillator, names: Sequence[str]) -> Array:
+    known = parameters_of(oscillator)
+    return np.array([known[name].value for name in names])
 
 
 class Displacement(Prediction):
@@ -87,14 +111,14 @@ class Displacement(Prediction):
         self.period, self.clock, self.first = period, clock, first
         tip = gap / np.abs(model.phi)
         self.scale = np.append(tip, tip * model.omega)
-        self.orbit = [np.ravel(start)]  # the last state that was accepted, one for all parts
+        self.orbit = Orbit(state=np.ravel(start))
         sizes = {"phase": 1.0, "offset": gap, "scale": 1.0}
         own = np.empty(0) if period else self.scale
         others = np.tile(np.arange(model.n_modes) != model.leading_mode, 2)[: own.size]
         self.sensor, self.fixed = tuple(free), dict(sensor)
         self.sizes = np.append(own, [sizes[name] for name in free])
         self.prior = np.append(np.where(others, PRIOR * own, np.inf), np.full(len(free), np.inf))
-        self.extra = np.append(self.orbit[0][: own.size], [sensor[name] for name in free])
+        self.extra = np.append(self.orbit.state[: own.size], [sensor[name] for name in free])
         self._last: tuple[ImpactOscillator, Array, Trajectory, NDArray[np.int64]] | None = None
 
     def parts(self) -> Sequence[Prediction]:
@@ -108,7 +132,7 @@ class Displacement(Prediction):
     def again(self) -> Displacement:
         """A copy with a start of its own."""
         found = copy.copy(self)
-        found.orbit = [*self.orbit]
+        found.orbit = copy.copy(self.orbit)
         return found
 
     def part(self, rows: slice) -> Displacement:
@@ -136,22 +160,30 @@ class Displacement(Prediction):
         return State(displacement=q, velocity=v, time=begun), times, float(times[-1])
 
     def _closed(self, oscillator: ImpactOscillator) -> State:
-        """The state at the clock on the orbit next to the last one; InvalidValue if none is found."""
-        n, begun, state = oscillator.n_modes, self.clock, self.orbit[0]
-        end = begun + self.period * oscillator.period
+        """The state at the clock on the orbit next to the last one; NoAnswer if none is found.
+
+        With the derivatives of the last orbit a step costs a motion; it is Newton's where these do not help.
+        """
+        n, begun, last = oscillator.n_modes, self.clock, self.orbit
+        state, inverse, before = last.at(oscillator), last.inverse, FAR
+        end = np.array([begun + self.period * oscillator.period])
         for _ in range(STEPS):
             at = State(displacement=state[:n], velocity=state[n:], time=begun)
-            found = motion_derivatives(
-                oscillator, at, periods=_periods(end, oscillator), times=np.array([end])
-            )
-            off = np.append(found.run.displacement[0], found.run.velocity[0]) - state
-            step = np.linalg.solve(np.eye(2 * n) - found.states[0], off)
-            if not np.abs(step / self.scale).max() < FAR:
+            periods = _periods(float(end[0]), oscillator)
+            if inverse is None:
+                found = motion_derivatives(oscillator, at, periods=periods, times=end)
+                run, inverse = found.run, np.linalg.inv(np.eye(2 * n) - found.states[0])
+            else:
+                run = simulate(oscillator, at, periods=periods, times=end)
+            step = inverse @ (np.append(run.displacement[0], run.velocity[0]) - state)
+            size = float(np.abs(step / self.scale).max())
+            if not size < FAR:
                 break
             state = state + step
-            if np.abs(step / self.scale).max() < CLOSED:
+            if size < CLOSED:
                 return State(displacement=state[:n], velocity=state[n:], time=begun)
-        raise InvalidValue(f"no orbit of {self.period} drive periods was found with these parameters")
+            inverse, before = inverse if size < SLOW * before else None, size
+        raise NoAnswer(f"no orbit of {self.period} drive periods was found with these parameters")
 
     def run(self, oscillator: ImpactOscillator, extra: Array) -> tuple[Trajectory, NDArray[np.int64]]:
         """The motion, the place of each row and of the end in it; InvalidValue if it rests on the stop."""
@@ -183,11 +215,14 @@ class Displacement(Prediction):
         moved = [name == "frequency" for name in names]
         rate = _rate(oscillator, state)
         if self.period:
-            self.orbit[0] = np.append(state.displacement, state.velocity)
             own = own + np.outer((self.times - rows) / f * later, moved)
             last = found.states[place[-1]]
             ends = last[:, 2 * n :] - np.outer(rate * self.period * oscillator.period / f, moved)
-            own, tips = own + tips @ np.linalg.solve(np.eye(2 * n) - last[:, : 2 * n], ends), tips[:, :0]
+            orbit = self.orbit
+            orbit.inverse = np.linalg.inv(np.eye(2 * n) - last[:, : 2 * n])
+            orbit.state, orbit.follow = np.append(state.displacement, state.velocity), orbit.inverse @ ends
+            orbit.names, orbit.values = tuple(names), _values(oscillator, names)
+            own, tips = own + tips @ orbit.follow, tips[:, :0]
         else:
             later = later - tips @ rate
             own = own + np.outer((self.times[0] - state.time) / f * later, moved)

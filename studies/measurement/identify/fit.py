@@ -23,10 +23,10 @@ from studies.measurement.identify.descent import Found
 from studies.measurement.identify.diagnosis import wanders
 from studies.measurement.identify.linear import Linear
 from studies.measurement.identify.predictions import Prediction
-from studies.measurement.identify.problem import Problem
+from studies.measurement.identify.problem import Problem, chance_of
 from studies.measurement.identify.profiles import Point
 from studies.measurement.identify.records import READ_OUT, NoAnswer, Record
-from studies.measurement.identify.result import Fit, judged
+from studies.measurement.identify.result import TOO_SMALL, Fit, determined, judged
 from studies.measurement.identify.soundness import sound
 from studies.measurement.identify.starts import predictions_of
 from studies.measurement.identify.unsteady import unsteady_starts
@@ -38,9 +38,9 @@ LEASH = 1.0
 """Prior of the parameters while the beginning of a record is fitted, which need not determine all of them."""
 
 EARLY, ROUGH, FINISHED, SAME, ASTRAY = 40, 1e-3, 3, 3e-3, 9.0
-"""Most steps from each start, until chi^2 falls by no more than this part; how many are fitted to the end;
-relative difference of values that are the same; growth of chi^2 by row at which the fit of more and more rows
-is given up."""
+"""Most steps from each start, until chi^2 falls by no more than this part; how many are fitted to the end, twice
+as many if none is like the record; relative difference of values that are the same; growth of chi^2 by row at
+which the fit of more and more rows is given up."""
 
 SHORT = 20.0
 """Drive periods of a motion that are fitted where more are not: chaos forgets its start."""
@@ -87,7 +87,7 @@ def _solved(
         if lowest is None:
             break
         found = problem.solve(problem.unknowns_of(lowest.values))
-    return replace(result, walks=walks)
+    return determined(replace(result, walks=walks))
 
 
 def _displacement(
@@ -166,10 +166,12 @@ def _best(problems: Sequence[Problem], known: bool) -> tuple[Problem, Found]:
             begun.append((float(np.sum(whole.residuals(found.x) ** 2)), i, found.x))
         except (ContactError, Refusal) as error:
             failure = failure or error
-    ends, tried = list[tuple[Problem, Found]](), list[Array]()
+    ends, tried, enough = list[tuple[Problem, Found]](), list[Array](), False
     for cost, i, unknowns in sorted(begun, key=lambda one: one[:2]):
         problem, values = problems[i], problems[i].values(unknowns)[problems[i].named]
-        if len(ends) == FINISHED or any(np.allclose(values, other, rtol=SAME, atol=0.0) for other in tried):
+        if (enough and len(ends) >= FINISHED) or any(
+            np.allclose(values, other, rtol=SAME, atol=0.0) for other in tried
+        ):
             continue
         tried.append(values)
         try:
@@ -179,7 +181,10 @@ def _best(problems: Sequence[Problem], known: bool) -> tuple[Problem, Found]:
                 if found.chi2 * sizes[0] > ASTRAY * cost * size:
                     raise NoAnswer(f"the motion that is like the first {sizes[0]} rows is unlike later ones")
                 unknowns = found.x
-            ends.append((problem, problem.solve(unknowns)))
+            found = problem.solve(unknowns)
+            chance = chance_of(found.fun[:rows], problem.prediction, known, problem.freedom)
+            enough = enough or chance > TOO_SMALL
+            ends.append((problem, found))
         except (ContactError, Refusal) as error:
             failure = failure or error
     if not ends:

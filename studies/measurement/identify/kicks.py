@@ -35,8 +35,9 @@ MOST_HARMONICS, MOST_KICKS, LONGEST = 90, 6, 12
 
 FREE_PERIODS, DECAY_RATES = np.geomspace(0.6, 1.4, 16), np.array([0.03, 0.1, 0.3, 0.7])
 """Where a search begins, in drive periods and per drive period."""
-STARTS, WORTH, APART = 5, 12.0, 0.04
-"""First kicks that are followed; what a further kick must take off chi^2; drive periods between two kicks."""
+STARTS, WORTH, LITTLE, APART = 5, 12.0, 0.7, 0.04
+"""First kicks that are followed; what a further kick must take off chi^2, and the part that it may leave if
+another is to follow; drive periods between two kicks."""
 
 VALLEY, LIKE = 50.0, 4
 """By how much chi^2 of another free period may be above the best; how many others are kept."""
@@ -274,8 +275,8 @@ class Search:
             charged = cost + WORTH * kicks.size
             if charged >= best[0]:
                 break
-            best = charged, logs, kicks
-            if cost < 1.2 * spare or spare < 2 * kicks.size + 6:
+            little, best = charged > LITTLE * best[0], (charged, logs, kicks)
+            if little or cost < 1.2 * spare or spare < 2 * kicks.size + 6:
                 break
             response = self.response(logs)
             times, gains = self.gains(response, kicks)

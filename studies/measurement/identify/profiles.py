@@ -1,7 +1,7 @@
 """Profile likelihood: what a fit becomes with one parameter held, and how far it may be moved.
 
 With p held at a value all others are fitted again; chi^2 rises by r^2 in units of the noise's variance.  The
-90 % interval ends where r is the `reach`, 1.645 or Student's t for it.  A refit begins at the last one, and the
+90 % interval ends where r is the `reach`, 1.645 or Student's t for it.  A refit begins at the last one, the
 value moves on by the secant of r.  A refit that has not settled is not believed: a shorter step follows.
 """
 
@@ -53,7 +53,7 @@ class Profile:
 @dataclass(frozen=True, eq=False)
 class Point:
     """A parameter held `away` standard errors from the best: the `rise` of chi^2 in the noise's variance,
-    the `values` of all unknowns, their change with one more standard error (`along`), and the prediction there."""
+    the `values` of all unknowns, their change `along` one more standard error, and the prediction there."""
 
     away: float
     rise: float
@@ -102,10 +102,16 @@ class Walk:
             found += (last.values - point.values - back * point.along) * (step / back) ** 2
             found[self.i] = point.values[self.i] + step * point.along[self.i]
         found[log] = point.values[log] * np.exp(found[log] / point.values[log] - 1.0)
+        others = np.arange(found.size) != self.i
+        low, high = self.problem.bounds * self.problem.sizes
+        found[others] = np.clip(found, low, high)[others]
         return found
 
     def rise_of(self, values: Array, prediction: Prediction) -> float:
         """The rise of chi^2 at these values; not a number where there is no motion."""
+        low, high = self.problem.bounds[:, self.i] * self.problem.sizes[self.i]
+        if not low < values[self.i] < high:
+            return math.nan
         problem = self.problem.of(prediction)
         return (
             float(np.sum(problem.residuals(problem.unknowns_of(values)) ** 2)) - self.chi2

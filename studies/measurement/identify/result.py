@@ -7,6 +7,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
@@ -16,7 +17,7 @@ from scipy import stats
 from scipy.special import expit, logit
 
 from contact import ImpactOscillator
-from studies.measurement.identify.descent import Found
+from studies.measurement.identify.descent import SEEN, Found
 from studies.measurement.identify.displacement import SENSOR
 from studies.measurement.identify.problem import MOST, SETTLED, Problem, chance_of
 from studies.measurement.identify.profiles import Walk
@@ -28,11 +29,11 @@ Array = NDArray[np.float64]
 LEVEL = 0.90
 """Probability of the intervals."""
 
-SINGULAR = 1e-8
-"""Ratio of singular values below which the record does not depend on a direction of the parameters."""
-
 TOO_SMALL = 1e-3
 """Probability of such residuals from noise alone, below which the model is called too small."""
+
+SIZES = {"restitution": 0.5, "phase": 1.0, "offset": math.inf}
+"""Least size of a number that an error is compared with: some may be zero."""
 
 PART, LOST = 0.3, 2.0
 """Part of the largest from which a parameter takes part in a direction that is not determined; standard error
@@ -125,18 +126,19 @@ def judged(problem: Problem, found: Found, oscillator: ImpactOscillator, known: 
     lengths = np.linalg.norm(found.jac, axis=0)
     lengths[lengths == 0.0] = 1.0
     _left, singular, axes = np.linalg.svd(found.jac / lengths, full_matrices=False)
-    gain = found.left / spread**2
-    if gain > SETTLED and chance > TOO_SMALL:  # else the model is too small
-        raise NoAnswer(f"the fit has not settled after {MOST} steps: chi^2 would still fall by {gain:.2g}")
     slopes, values = problem.slopes(found.x), problem.values(found.x)
     sizes = np.where(problem.log, LOST * np.abs(values), np.maximum(np.abs(values), problem.sizes))
     axes = axes / lengths @ slopes.T
-    if not singular[-1] > SINGULAR * singular[0]:
+    lost = not singular[-1] > SEEN * singular[0]
+    if lost and chance > TOO_SMALL:
         blind = _blind((axes / sizes)[:, own], names)
         raise NoAnswer(f"the record cannot {blind}: fit fewer parameters or another record")
-    covariance = (axes.T / singular**2 @ axes * spread**2)[np.ix_(own, own)]
+    gain = found.left / spread**2
+    if gain > SETTLED and chance > TOO_SMALL:  # else the model is too small
+        raise NoAnswer(f"the fit has not settled after {MOST} steps: chi^2 would still fall by {gain:.2g}")
+    covariance = (axes.T / np.maximum(singular, SEEN * singular[0]) ** 2 @ axes * spread**2)[np.ix_(own, own)]
     before = parameters_of(oscillator)
-    result = Fit(
+    return Fit(
         record=prediction.record,
         oscillator=problem.at(found.x)[0],
         names=names,
@@ -152,12 +154,21 @@ def judged(problem: Problem, found: Found, oscillator: ImpactOscillator, known: 
         problem=problem,
         unknowns=found.x,
     )
-    share = result.errors / sizes[own]
-    if not result.too_small and np.any(share > 1.0):  # else `report` says so
-        worst, blind = names[int(np.argmax(share))], _blind((axes / sizes)[:, own], names)
+
+
+def determined(found: Fit) -> Fit:
+    """The fit; NoAnswer if the error of a parameter is above its value."""
+    sizes = np.array([SIZES.get(name, 0.0) for name in found.names])
+    sizes = np.maximum(np.abs(found.estimate), sizes) * np.where(
+        found.problem.log[found.problem.named], LOST, 1.0
+    )
+    share = found.errors / sizes
+    if not found.too_small and not np.all(share <= 1.0):  # else the residuals say so
+        axes = np.linalg.eigh(found.covariance / np.outer(sizes, sizes))[1].T
+        worst, blind = found.names[int(np.argmax(share))], _blind(axes, found.names)
         blind = blind if worst in blind.split() else f"determine {worst}"
         raise NoAnswer(f"the record cannot {blind}: the standard error of {worst} is above its value")
-    return result
+    return found
 
 
 def _blind(axes: Array, names: Sequence[str]) -> str:
