@@ -38,9 +38,9 @@ LEASH = 1.0
 """Prior of the parameters while the beginning of a record is fitted, which need not determine all of them."""
 
 EARLY, ROUGH, FINISHED, SAME, ASTRAY = 40, 1e-3, 3, 3e-3, 9.0
-"""Most steps from each start, until chi^2 falls by no more than this part; how many are fitted to the end, twice
-as many if none is like the record; relative difference of values that are the same; growth of chi^2 by row at
-which the fit of more and more rows is given up."""
+"""Most steps from each start, until chi^2 falls by no more than this part; how many are fitted to the end
+(twice as many if none is like the record); relative difference of values that are the same; growth of chi^2
+by row at which the fit of more and more rows is given up."""
 
 SHORT = 20.0
 """Drive periods of a motion that are fitted where more are not: chaos forgets its start."""
