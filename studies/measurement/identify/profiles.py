@@ -84,6 +84,7 @@ class Walk:
         unknowns = problem.unknowns_of(values)
         rows = np.linalg.qr(problem.jacobian(unknowns))[1] @ np.linalg.inv(problem.slopes(unknowns))
         sizes = np.linalg.norm(rows, axis=0)
+        sizes[sizes == 0.0] = 1.0
         others = np.delete(rows / sizes, self.i, axis=1)
         follow = np.linalg.lstsq(others, -rows[:, self.i], rcond=None)[0] / np.delete(sizes, self.i)
         each = values[self.i] / self.best.values[self.i] if away and self._log else 1.0

@@ -57,9 +57,6 @@ FACTORS = (0.1, 10.0, 0.3, 3.0, 0.03, 30.0)
 RESTITUTIONS = (0.1, 0.3, 0.6, 0.9)
 """Restitutions that are tried beside those of the record and the scene."""
 
-NEARLY = 0.8
-"""Part of the gap below which a kick is none by the stop."""
-
 LOOKED = 200
 """Times of an orbit at which the tip may be farthest from the stop, where its state begins."""
 
@@ -223,23 +220,19 @@ def starts_at(
     elif "restitution" in law:
         others += [{"restitution": part} for part in RESTITUTIONS]
     tried = [with_values(begun, other) for other in others]
-    heights = [sign / size * motion.tip(float(kick))[0] for kick in motion.kicks]
-    reached = min(height for height in heights if height > NEARLY * read["gap"])
     given = [with_values(oscillator, {"frequency": begun.driven.frequency})]
     given = [] if few or not oscillator.driven.amplitude else given
     return [
         (Displacement(record, one, start, sensor, free, period=motion.period, clock=lowest), one)
-        for one in [*(_behind(one, start, lowest, lasting, reached) for one in tried), *given]
+        for one in [*(_behind(one, start, lowest, lasting) for one in tried), *given]
     ]
 
 
-def _behind(
-    oscillator: ImpactOscillator, start: Array, clock: float, lasting: float, reached: float
-) -> ImpactOscillator:
+def _behind(oscillator: ImpactOscillator, start: Array, clock: float, lasting: float) -> ImpactOscillator:
     """The oscillator with the gap at which a kick in the middle of a contact is this contact.
 
     A kicked tip goes on at its approach velocity v until the middle of a contact of duration d: to v d/2
-    beyond the stop.  The gap is no larger than what is `reached` at every kick.
+    beyond the stop.
     """
     state = State(displacement=start[0], velocity=start[1], time=clock)
     try:
@@ -248,6 +241,6 @@ def _behind(
             return oscillator
         first = int(np.argmax(impacts.approach))
         beyond = 0.5 * float(impacts.approach[first] * (impacts.end[first] - impacts.start[first]))
-        return with_values(oscillator, {"gap": min(oscillator.stop.gap - beyond, reached)})
+        return with_values(oscillator, {"gap": oscillator.stop.gap - beyond})
     except (ContactError, Refusal):
         return oscillator
