@@ -15,6 +15,7 @@ from record_simulators import Beam, draw, follow, settle, tip
 from beam import InvalidValue
 from contact import State, simulate
 from studies.measurement.identify import diagnosis
+from studies.measurement.identify.__main__ import answered
 from studies.measurement.identify.diagnosis import contradictions, defects, drive_found, unit_of
 from studies.measurement.identify.fit import fit
 from studies.measurement.identify.kicks import harmonics
@@ -225,6 +226,10 @@ def test_units_and_a_drive_that_contradict_the_record_are_wrong_use(scene_of_eq1
     found = fit(replace(record, frequency=1.005 * F), scene_of_eq1, ALL)
     right(found, amplitude)
     assert "the given drive of 22.311 Hz is off by +0.5" in found.record.notes[0]
+    with pytest.raises(
+        NoAnswer, match=r"the model is too small .*; the best values found are free_period 40\.8"
+    ):
+        answered(replace(found, chance=0.0))
 
 
 def test_strobe_points_in_another_unit_are_wrong_use(scene_of_eq1):

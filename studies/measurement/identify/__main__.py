@@ -36,7 +36,7 @@ synthetic ones, with 0.5 um of read-out noise, are made and fitted.
 The base moves as Z sin(2 pi f t + phase).  The time t is that of the record's stamps.
 
 --next NAMES finds the next measurement: the drive frequency and excess at which the strobes of one orbit
-determine these parameters best (studies.measurement.identify.next_measurement).  The oscillator is Eq. (1)
+determine these parameters best (studies.measurement.next_measurement).  The oscillator is Eq. (1)
 with the restitution and the constant delay of the fit.  A place counts if the orbit outlives its errors.
 
 Run:     python -m studies identify [RECORD.csv --fit T tau gap phase] [--next NAMES]
@@ -58,26 +58,15 @@ import numpy as np
 
 from beam import InvalidValue, Refusal
 from contact import ImpactOscillator
-from studies.measurement.identify import figure
 from studies.measurement.identify.diagnosis import contradictions, wanders
 from studies.measurement.identify.displacement import SENSOR
 from studies.measurement.identify.estimates import estimates_of, report
 from studies.measurement.identify.fit import fit as fitted
-from studies.measurement.identify.next_measurement import (
-    EXCESSES,
-    FREQUENCIES_HZ,
-    THIN,
-    LetterOrbits,
-    Measurement,
-    Plan,
-    answer,
-    best,
-    letter_rows,
-    measurements_at,
-)
 from studies.measurement.identify.records import Kind, NoAnswer, Record, read_record, synthetic
 from studies.measurement.identify.result import Fit
 from studies.measurement.identify.soundness import notes_of
+from studies.measurement.next_measurement.figure import tabulated
+from studies.measurement.next_measurement.model import EXCESSES, FREQUENCIES_HZ, THIN, Measurement, Plan
 from studies.physics.parameters import (
     Description,
     described,
@@ -106,7 +95,6 @@ EXAMPLES: Mapping[Kind, Description] = {
     "transitions": "one_mode",
 }
 FREQUENCY_HZ, SEED = 22.20, 1996  # of the example: the letter's p5
-BEST = ("frequency_hz", "excess", "period", "errors", "together")
 
 
 def frequency_of(record: Record, scene: Scene) -> float:
@@ -260,7 +248,7 @@ def answered(one: Fit) -> Fit:
     """The fit; NoAnswer with the best values if its residuals are unlike noise."""
     if not one.too_small:
         return one
-    best = ", ".join(f"{row.parameter} {row.value}" for row in estimates_of("", one, ()))
+    best = ", ".join(f"{row.parameter} {row.value}" for row in estimates_of("", one))
     raise NoAnswer(f"{reason(one)}; the best values found are {best}, with errors that mean little")
 
 
@@ -274,25 +262,9 @@ def as_scene(scene: Scene, found: Fit) -> Scene:
 def where_to_measure(
     scene: Scene, run: Run, wanted: Sequence[str], delay: float | None, noise: float
 ) -> list[Measurement]:
-    """Tables, figure and answer of the next measurement of the `wanted` parameters; returns the best places.
-
-    The oscillator is Eq. (1) with a constant restitution and `delay` [s].
-    """
-    of = partial(described, scene, "two_parameters", delay)
+    """The best places to measure the `wanted` parameters of Eq. (1) with a constant `delay` [s]."""
     before = {name: error for name, error in Plan().before.items() if name not in wanted}
     plan, thin = Plan(names=tuple(wanted), noise=noise, before=before), THIN[run.quick]
     frequencies = [corresponding(scene, f) for f in FREQUENCIES_HZ[::thin]]
-    columns = run.map(partial(measurements_at, of, plan, EXCESSES[::thin]), frequencies, "frequencies")
-    found = [one for column in columns for one in column]
-    chosen = best(found)
-    caption = f"Standard errors of {', '.join(wanted)} by one orbit."
-    run.table("measurements", found, caption, of=Measurement, show=())
-    run.table("next", chosen, f"The five best places. {caption}", of=Measurement, show=BEST)
-    if found:
-        run.figure("next", figure.draw_plane(found, plan), figure.PLANE)
-    if run.letters:
-        letters = letter_rows(of, plan)
-        run.table("letter_orbits", letters, "The same by the letter's orbits.", of=LetterOrbits)
-        if plan.names == Plan().names:
-            run.answer("period", answer(found, letters, plan))
-    return chosen
+    of = partial(described, scene, "two_parameters", delay)
+    return tabulated(run, of, plan, frequencies, EXCESSES[::thin])
