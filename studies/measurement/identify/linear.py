@@ -16,8 +16,9 @@ from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
 from contact import ImpactOscillator
-from studies.measurement.identify.diagnosis import off_neighbours, repetition, strongest_line
+from studies.measurement.identify.diagnosis import off_neighbours, peaks, repetition
 from studies.measurement.identify.displacement import SENSOR, Displacement
+from studies.measurement.identify.kicks import poles
 from studies.measurement.identify.records import NoAnswer, Record
 from studies.physics.parameters import with_values
 
@@ -39,16 +40,14 @@ class Linear:
 
     def __init__(self, record: Record) -> None:
         (self.times, self.values), self.record = record.rows.T, record
-        line = record.frequency or strongest_line(self.times, self.values)
+        line = record.frequency or float(peaks(self.times, self.values)[0][0])
         grid = [np.array([line, at / line, rate * line]) for at in FREE for rate in DECAYS]
         begun = min(grid, key=lambda one: float(np.sum(self.left(one)[1] ** 2)))
 
         def off(logs: Array) -> Array:
             return self.left(begun * np.exp(logs))[1]
 
-        found = least_squares(
-            lambda u: self.left(begun * np.exp(u))[1], np.zeros(3), x_scale="jac", max_nfev=60
-        )
+        found = least_squares(off, np.zeros(3), x_scale="jac", max_nfev=60)
         self.frequency, self.free_period, self.decay_rate = begun * np.exp(found.x)
         parts, rest = self.left(begun * np.exp(found.x))
         self.offset, self.steady, self.free = parts[0], parts[1] - 1j * parts[2], parts[3] - 1j * parts[4]
@@ -80,14 +79,10 @@ class Linear:
         kept, lost = ([n for n in names if (n in NAMES) == own] for own in (True, False))
         alike = [name for name in kept if name in NAMES[:RESPONSE]]
         if not kept or (not self.decays and len(alike) > 1):
-            height, pace = 1e3 * abs(self.steady), self.frequency
-            blind = (
-                f"tell {', '.join(alike[:-1])} and {alike[-1]} apart" if kept else f"tell {', '.join(lost)}"
-            )
-            raise NoAnswer(
-                f"{'a' if self.decays else 'a steady'} motion without impacts at {pace:.4g} Hz of amplitude "
-                f"{height:.3g} mm: it cannot {blind}; there is no impact in the record"
-            )
+            blind = f"{', '.join(alike[:-1])} and {alike[-1]} apart" if kept else ", ".join(lost)
+            motion = f"{'a' if self.decays else 'a steady'} motion without impacts at {self.frequency:.4g} Hz"
+            height = f"of amplitude {1e3 * abs(self.steady):.3g} mm"
+            raise NoAnswer(f"{motion} {height}: it cannot tell {blind}; there is no impact in the record")
         found = {"frequency": float(self.frequency), "gap": AWAY * float(np.abs(self.values).max())}
         if self.decays:
             found |= {"free_period": float(self.free_period), "decay_rate": float(self.decay_rate)}
@@ -95,13 +90,19 @@ class Linear:
         drive = 1j * self.steady / at.tip_response()
         if "amplitude" in kept:
             at = with_values(at, {"amplitude": abs(drive)})
-        model, w = at.model, at.driven.angular_frequency
-        share = at.steady_response() / at.tip_response() * self.steady * np.exp(1j * w * self.times[0])
-        pole = 2j * math.pi / self.free_period - 0.5 * self.decay_rate
-        own = np.eye(model.n_modes)[model.leading_mode] / model.phi * self.free * self.decays
-        state = np.concatenate([(share + own).real, (1j * w * share + pole * own).real])
+        turn = np.exp(1j * at.driven.angular_frequency * self.times[0])
+        state = state_of(at, self.steady / at.tip_response() * turn, self.free * self.decays)
         sensor = dict(SENSOR) | {"offset": float(self.offset), "phase": float(np.angle(drive))}
         sensor = {name: sensor[name] if name in free else SENSOR[name] for name in sensor}
         note = f"no impact in the record: not fitted: {', '.join(lost) or 'nothing else'}"
         record = replace(self.record, notes=(*self.record.notes, note))
         return Displacement(record, at, state, sensor, free), at, tuple(kept)
+
+
+def state_of(oscillator: ImpactOscillator, base: complex, free: complex) -> Array:
+    """Modal displacements and velocities where the base is at Re(`base`), moved at the drive frequency, and
+    mode 1 moves the tip by Re(`free`) besides."""
+    model, w = oscillator.model, oscillator.driven.angular_frequency
+    share = oscillator.steady_response() * base
+    own = np.eye(model.n_modes)[model.leading_mode] / model.phi * free
+    return np.append((share + own).real, (1j * w * share + poles(oscillator) * own).real)
