@@ -54,8 +54,6 @@ from functools import partial
 from pathlib import Path
 from typing import Annotated
 
-import numpy as np
-
 from beam import InvalidValue, Refusal
 from contact import ImpactOscillator
 from studies.measurement.identify.diagnosis import contradictions, wanders
@@ -64,7 +62,6 @@ from studies.measurement.identify.estimates import estimates_of, report
 from studies.measurement.identify.fit import fit as fitted
 from studies.measurement.identify.records import Kind, NoAnswer, Record, read_record, synthetic
 from studies.measurement.identify.result import Fit
-from studies.measurement.identify.soundness import notes_of
 from studies.measurement.next_measurement.figure import tabulated
 from studies.measurement.next_measurement.model import EXCESSES, FREQUENCIES_HZ, THIN, Measurement, Plan
 from studies.physics.parameters import (
@@ -79,12 +76,10 @@ from studies.shell.options import POSITIONAL, Within
 from studies.shell.scene import Scene, corresponding, harmonic, periods_of
 from studies.shell.study import Run, study
 
+STEADY = ("free_period", "decay_rate", "gap", "amplitude")
 USUAL: Mapping[Kind, tuple[str, ...]] = {
     "strobe": ("free_period", "decay_rate", "gap", "restitution", "stiffness"),
-    "displacement": (
-        *("free_period", "decay_rate", "gap", "amplitude"),
-        *("restitution", "delay", "stiffness", "frequency"),
-    ),
+    "displacement": (*STEADY, "restitution", "delay", "stiffness", "frequency"),
     "transitions": ("free_period", "restitution"),
 }
 """The parameters that are fitted to a kind of record by default, as far as the oscillator has them."""
@@ -104,13 +99,6 @@ def frequency_of(record: Record, scene: Scene) -> float:
     if record.frequency is None and record.kind == "strobe":
         raise InvalidValue("the record does not say the frequency of the drive: give --drive HZ MM")
     return record.frequency or corresponding(scene, FREQUENCY_HZ)
-
-
-def in_step(record: Record, oscillator: ImpactOscillator) -> int:
-    """Rows a drive period if that is a whole number within what the record resolves; else 0."""
-    times = record.rows[:, 0]
-    rows = oscillator.period / float(np.median(np.diff(times)))
-    return round(rows) if abs(rows - round(rows)) * (times[-1] - times[0]) < oscillator.period else 0
 
 
 def usual(record: Record, oscillator: ImpactOscillator) -> tuple[str, ...]:
@@ -205,14 +193,6 @@ def identify(
     first, *_ = found
     fit_scene = as_scene(scene, found[first])  # before the report: it refuses values that no scene has
     results = report(run, found)
-    for name, one in found.items():
-        for note in notes_of(one.record, dict(zip(one.names, one.estimate, strict=True)).get("amplitude")):
-            run.say(f"{name}: {note}")
-        if one.record.kind == "displacement" and (rows := in_step(one.record, one.oscillator)):
-            run.say(
-                f"{name}: {rows} rows a drive period, so that all impacts lie alike between two of them: "
-                "errors of gap, restitution and delay are too small; record at another rate"
-            )
     about = [f"# {row.parameter} {row.value}" for row in results["rows"] if row.record == first]
     run.text("fitted.toml", "\n".join([*about, "", fit_scene.dump()]))
     if wanted:
@@ -237,10 +217,10 @@ def reason(one: Fit) -> str:
     """Why the residuals of a fit are unlike noise."""
     if one.record.kind != "displacement":
         return "the model is too small for the record"
-    (times, values), frequency = one.record.rows.T, one.oscillator.driven.frequency
-    residuals, period = one.residuals[:, 0], int(one.problem.prediction.period)
+    (times, values), residuals = one.record.rows.T, one.residuals[:, 0]
+    frequency = one.oscillator.driven.frequency
     found = wanders(times, values, residuals, frequency)
-    found += contradictions(times, values, residuals, frequency, period)
+    found += contradictions(times, values, residuals, frequency, one.problem.prediction.period)
     return "; ".join([*dict.fromkeys(found)][:2])
 
 

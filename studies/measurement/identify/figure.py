@@ -16,20 +16,14 @@ from studies.shell import plotting
 
 CAPTION = (
     "Each record with its fit (left), residuals (middle), and the profile likelihood of the two parameters "
-    "that trade off most (blue: $\\chi^2$, dashed the 90 % interval; red: the other, fitted again), or the "
-    "correlations of all (right)."
+    "that trade off most (dashed: the 90 % interval), or the correlations of all (right)."
 )
-SHOWN = 6
-"""Drive periods of a displacement that are shown."""
+SHOWN, DEPTH, DARK = 6, 2.71, 0.6
+"""Drive periods of a displacement that are shown; rise of chi^2 at the ends of a 90 % interval; correlation
+from which on its cell is dark."""
 
 FITTED: plotting.Style = {"linestyle": "none", "marker": "_", "color": "black", "zorder": 5, "label": "fit"}
 DOTS: plotting.Style = {"linestyle": "none", "marker": ".", "markersize": 2, "rasterized": True}
-
-DEPTH = 2.71
-"""Rise of chi^2 at the ends of a 90 % interval."""
-
-DARK = 0.6
-"""Correlation from which on its cell is dark."""
 
 
 @plotting.in_house_style
@@ -40,7 +34,8 @@ def draw(found: Mapping[str, Fit], profiles: Mapping[str, Sequence[Profile]]) ->
     for i, ((name, one), row) in enumerate(zip(found.items(), axes, strict=True)):
         _record(row[0], row[1], one)
         _trade(row[2], one, profiles[name])
-        for k, words in enumerate((name, "residuals", "")):
+        shown = "profile" if profiles[name] else "correlations"
+        for k, words in enumerate((f"{name}: record and fit", "residuals", shown)):
             plotting.panel(row[k], 3 * i + k, words)
     return figure
 
@@ -57,13 +52,11 @@ def _record(left: Any, middle: Any, one: Fit) -> None:
         left.plot(place, unit * seen, **DOTS, color=plotting.SKY, label="record")
         left.plot(place, unit * fitted, color=plotting.BLACK, linewidth=0.6, label="fit")
         left.set_xlim(place[0], place[0] + 1e3 * SHOWN * one.oscillator.period)
-    elif kind == "strobe":
-        place, across = np.arange(len(seen), dtype=float), ("strobe", "1")
-        left.plot(place, unit * seen, **plotting.points(1), label="record")
-        left.plot(place, unit * fitted, **FITTED)
     else:
-        place, across = rows[:, 0], ("drive frequency", "Hz")
-        errors = unit * one.record.units(one.noise)[:, 0]
+        place, across, errors = np.arange(len(seen), dtype=float), ("strobe", "1"), None
+        if table:
+            place, across = rows[:, 0], ("drive frequency", "Hz")
+            errors = unit * one.record.units(one.noise)[:, 0]
         left.errorbar(place, unit * seen, errors, **plotting.points(1), label="record")
         left.plot(place, unit * fitted, **FITTED)
     middle.plot(place, fine * residuals, **DOTS, color=plotting.BLUE)
@@ -97,10 +90,15 @@ def _trade(axis: Any, one: Fit, rows: Sequence[Profile]) -> None:
         return scale * np.array(values)
 
     value = shown(axis.xaxis, own[0].parameter, [row.value for row in own])
-    axis.plot(value, [row.depth for row in own], **plotting.series(1))
+    lines = axis.plot(value, [row.depth for row in own], **plotting.series(1), label="$\\chi^2$")
     axis.axhline(DEPTH, **plotting.GUIDE)
     axis.locator_params(axis="x", nbins=5)
+    axis.margins(y=0.25)
     plotting.label(axis.yaxis, "rise of $\\chi^2$")
     fitted = shown(other.yaxis, own[0].other, [row.other_value for row in own])
-    other.plot(value, fitted, **plotting.series(2))
+    lines += other.plot(value, fitted, **plotting.series(2), label=own[0].other.replace("_", " "))
+    for side, line in zip((axis, other), lines, strict=True):
+        side.tick_params(axis="y", colors=line.get_color())
+        side.yaxis.label.set_color(line.get_color())
     other.spines["right"].set_visible(True)
+    axis.legend(handles=lines, loc="upper center")

@@ -16,10 +16,9 @@ from studies.physics.parameters import parameters_of, with_values
 MOST, DENSE = 20_000, 40
 """Rows of a displacement that are fitted at most; rows a drive period that are left of more."""
 
-OFF, APART, BEYOND, UNLIKE = 0.01, 100.0, 10.0, 2.0
+OFF, APART, BEYOND = 0.01, 100.0, 10.0
 """Part by which the given drive frequency may be off. Ratio of an amplitude to that of grazing which may be
-one of units; of the largest strobe point to the gap; of two amplitudes that contradict each other (clamped
-beams: 1.57)."""
+one of units; of the largest strobe point to the gap."""
 
 
 def sound(record: Record, oscillator: ImpactOscillator) -> tuple[Record, ImpactOscillator]:
@@ -76,12 +75,3 @@ def require_strobe_units(record: Record, oscillator: ImpactOscillator) -> None:
             f"the given amplitude is {given:.4g} m, but the tip meets the stop from {least:.4g} m on: "
             "--drive takes Hz and mm"
         )
-
-
-def notes_of(record: Record, amplitude: float | None) -> list[str]:
-    """What was changed of a record, and whether the fitted amplitude contradicts the given one."""
-    given, found = record.amplitude, list(record.notes)
-    if given and amplitude and not 1.0 / UNLIKE < amplitude / given < UNLIKE:
-        both = f"{1e3 * amplitude:.4g} mm contradicts the given {1e3 * given:.4g} mm"
-        found.append(f"the fitted amplitude of {both}")
-    return found
