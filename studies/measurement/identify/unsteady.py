@@ -38,9 +38,9 @@ def unsteady_starts(
     """
     record = linear.record
     times, x, found = *record.rows.T, list[tuple[Displacement, ImpactOscillator]]()
+    part, period = close_return(times, x, linear.frequency)
+    at = with_values(oscillator, {"frequency": linear.frequency})
     motions = kicked_motions(times, x, oscillator, record.frequency)
-    part, period = close_return(times, x, float(linear.frequency))
-    at = with_values(oscillator, {"frequency": float(linear.frequency)})
     motions += Search(times[part], x[part], at, period).found()
     likely = [one for one in motions if one.reading()["gap"] > 0.0 and one.steady != 0.0]
     pairs = [pair for one in likely[:TRIED] for pair in starts_at(record, one, oscillator, names, free, True)]
