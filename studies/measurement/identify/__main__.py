@@ -213,23 +213,19 @@ def examples(scene: Scene, run: Run, delay: float | None) -> dict[str, tuple[Rec
     return found
 
 
-def reason(one: Fit) -> str:
-    """Why the residuals of a fit are unlike noise."""
-    if one.record.kind != "displacement":
-        return "the model is too small for the record"
-    (times, values), residuals = one.record.rows.T, one.residuals[:, 0]
-    frequency = one.oscillator.driven.frequency
-    found = wanders(times, values, residuals, frequency)
-    found += contradictions(times, values, residuals, frequency, one.problem.prediction.period)
-    return "; ".join([*dict.fromkeys(found)][:2])
-
-
 def answered(one: Fit) -> Fit:
-    """The fit; NoAnswer with the best values if its residuals are unlike noise."""
+    """The fit; NoAnswer with reasons and the best values if its residuals are unlike noise."""
     if not one.too_small:
         return one
+    why = ["the model is too small for the record"]
+    if one.record.kind == "displacement":
+        (times, values), residuals = one.record.rows.T, one.residuals[:, 0]
+        frequency, period = one.oscillator.driven.frequency, one.problem.prediction.period
+        why = wanders(times, values, residuals, frequency)
+        why += contradictions(times, values, residuals, frequency, period)
+    reason = "; ".join([*dict.fromkeys(why)][:2])
     best = ", ".join(f"{row.parameter} {row.value}" for row in estimates_of("", one))
-    raise NoAnswer(f"{reason(one)}; the best values found are {best}, with errors that mean little")
+    raise NoAnswer(f"{reason}; the best values found are {best}, with errors that mean little")
 
 
 def as_scene(scene: Scene, found: Fit) -> Scene:

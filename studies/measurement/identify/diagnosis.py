@@ -157,11 +157,12 @@ def walked(times: Array, values: Array, frequency: float, period: int) -> list[s
 def filtered(times: Array, values: Array, predicted: Array, pace: float) -> list[str]:
     """A filter of one pole: predictions over readings, line by line, have squares 1 + (nu/corner)^2."""
     (read, noise), known = orbit_of(times, values, pace), orbit_of(times, predicted, pace)[0]
-    square, nu = np.abs(known[1:] / read[1:]) ** 2, pace * np.arange(1, known.size)
-    error = noise / math.sqrt(2.0 * min(times.size, MANY)) / np.abs(known[1:])
-    weight = np.where(error < 0.1, 0.5 / np.hypot(error, 3e-4) / square, 0.0)
-    if np.count_nonzero(weight) < 6:
+    error = noise / math.sqrt(2.0 * min(times.size, MANY))
+    order = 1 + np.flatnonzero(np.abs(known[1:]) > 10.0 * error)
+    if order.size < 6:
         return []
+    square, nu = np.abs(known[order] / read[order]) ** 2, pace * order
+    weight = 0.5 / np.hypot(error / np.abs(read[order]), 3e-4) / square
     (slope, level), spread = np.polyfit(nu**2, square, 1, w=weight, cov="unscaled")
     left, gain = np.sum((weight * (square - level - slope * nu**2)) ** 2), slope**2 / spread[0, 0]
     if min(slope, level) <= 0.0 or gain < max(SURE**2, 2.3 * left):

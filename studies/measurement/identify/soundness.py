@@ -48,18 +48,17 @@ def unit_of(found: float, given: float, what: str) -> str | None:
     base = "seconds" if "period" in what else "metres"
     for factor, unit, number in ((1e3, f"milli{base}", "1000"), (1e6, f"micro{base}", "1e6")):
         for one, other, thing in ((given, found, f"the given {what}"), (found, given, "the record")):
-            if abs(one - factor * other) < 0.15 * abs(factor * other):
+            if abs(one - factor * other) < 0.15 * factor * other:
                 return f"{thing} looks like {unit}: divide by {number}"
     return None
 
 
 def require_units(record: Record, oscillator: ImpactOscillator, found: Mapping[str, float]) -> None:
     """InvalidValue if a thousand or a million is between given values and the ones `found` in the record."""
-    known = parameters_of(oscillator)
-    for name in [one for one in ("amplitude" if record.amplitude else "gap", "free_period") if one in found]:
-        value, unit = known[name].value, known[name].unit
-        if words := unit_of(found[name], value, name):
-            both = f"{found[name]:.4g} {unit} by the record, {value:.4g} {unit} as given"
+    for name in ("amplitude" if record.amplitude else "gap", "free_period"):
+        known = parameters_of(oscillator)[name]
+        if name in found and (words := unit_of(found[name], known.value, name)):
+            both = f"{found[name]:.4g} {known.unit} by the record, {known.value:.4g} {known.unit} as given"
             raise InvalidValue(f"{name} is {both}: {words}")
 
 
@@ -67,8 +66,9 @@ def require_strobe_units(record: Record, oscillator: ImpactOscillator) -> None:
     """InvalidValue if strobe points are far beyond the stop, or the amplitude is far from grazing."""
     farthest, gap = float(np.abs(record.observed[:, 0]).max()), oscillator.stop.gap
     if farthest > BEYOND * gap:
-        words = unit_of(1e3 if farthest < 3e4 * gap else 1e6, 1.0, "x_m")
-        raise InvalidValue(f"x_m reaches {farthest:.4g} m, where the gap is {gap:.4g} m: {words}")
+        unit = "millimetres: divide by 1000" if farthest < 3e4 * gap else "micrometres: divide by 1e6"
+        both = f"x_m reaches {farthest:.4g} m, where the gap is {gap:.4g} m"
+        raise InvalidValue(f"{both}: the record looks like {unit}")
     given, least = record.amplitude or 0.0, oscillator.grazing_amplitude()
     if given > APART * least or 0.0 < given < least / APART:
         raise InvalidValue(
