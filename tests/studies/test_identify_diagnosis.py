@@ -14,10 +14,12 @@ from record_simulators import Beam, draw, follow, settle, tip
 
 from beam import InvalidValue
 from contact import State, simulate
+from studies.measurement.identify import figure
 from studies.measurement.identify.__main__ import answered
 from studies.measurement.identify.diagnosis import contradictions, defects, drive_found, peaks
 from studies.measurement.identify.fit import fit
 from studies.measurement.identify.kicks import harmonics
+from studies.measurement.identify.profiles import Profile
 from studies.measurement.identify.records import NoAnswer, Record
 from studies.measurement.identify.soundness import unit_of
 from studies.physics.parameters import with_values
@@ -250,6 +252,11 @@ def test_a_scale_is_found_where_the_gap_or_the_amplitude_is_held(scene_of_eq1, s
         )
         right(found, amplitude)
         assert found.estimate[-1] == pytest.approx(-0.85, abs=4.0 * found.errors[-1])
+    rows = [Profile(parameter="gap", value=v, other="decay_rate", other_value=v, depth=v) for v in (1.0, 2.0)]
+    *_, profile, other = figure.draw({"mine": found}, {"mine": rows}).axes
+    assert [text.get_text() for text in profile.get_legend().get_texts()] == ["$\\chi^2$", "decay rate"]
+    for side in (profile, other):  # an axis has the colour of its curve
+        assert side.yaxis.label.get_color() == side.lines[0].get_color()
 
 
 def test_a_long_record_is_thinned_and_an_amplitude_ten_times_off_is_said(run_study, tmp_path, monkeypatch):

@@ -111,12 +111,10 @@ def estimates_of(name: str, found: Fit) -> list[Estimate]:
 
 def correlated(name: str, found: Fit) -> list[Correlation]:
     """The pairs of a fit whose correlation is largest in size, the largest first."""
-    pairs = [
-        Correlation(name, found.names[i], found.names[k], float(found.correlations[i, k]))
-        for i, k in combinations(range(len(found.names)), 2)
-        if abs(found.correlations[i, k]) > NOTABLE
-    ]
-    return sorted(pairs, key=lambda pair: -abs(pair.correlation))[:MOST]
+    size, names = np.abs(found.correlations), found.names
+    pairs = sorted(combinations(range(len(names)), 2), key=lambda pair: -size[pair])[:MOST]
+    shown = [(i, k) for i, k in pairs if size[i, k] > NOTABLE]
+    return [Correlation(name, names[i], names[k], float(found.correlations[i, k])) for i, k in shown]
 
 
 def traded(found: Fit, quick: bool) -> list[Profile]:
