@@ -230,9 +230,8 @@ def answered(one: Fit) -> Fit:
 
 def as_scene(scene: Scene, found: Fit) -> Scene:
     """The scene with the fitted oscillator."""
-    table = found.record.kind == "transitions"
-    frequencies = sorted(set(found.record.rows[:, 0])) if table else [found.oscillator.driven.frequency]
-    return fitted_scene(scene, found.oscillator, frequencies)
+    several = sorted(set(found.record.rows[:, 0])) if found.record.kind == "transitions" else []
+    return fitted_scene(scene, found.oscillator, several or [found.oscillator.driven.frequency])
 
 
 def where_to_measure(

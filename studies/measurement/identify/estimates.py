@@ -16,17 +16,12 @@ from studies.measurement.identify.result import Fit
 from studies.physics.parameters import parameters_of
 from studies.shell.run import Run
 
-TRADE, NOTABLE, MOST = 0.95, 0.5, 10
-"""Correlations from which on two parameters trade off, and from which on they are shown; how many."""
-
-UNLIKE = 2.0
-"""Ratio of a fitted amplitude to a given one that contradicts it (clamped beams: 1.57)."""
+TRADE, NOTABLE, MOST, UNLIKE = 0.95, 0.5, 10, 2.0
+"""Correlations from which on two parameters trade off, and from which on they are shown; how many; ratio of
+a fitted amplitude to a given one that contradicts it (clamped beams: 1.57)."""
 
 SHOWN = ("record", "parameter", "value", "interval", "began", "in_scene")
 """Columns of the estimates on the terminal."""
-
-PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "\u00b5"}
-"""Power of ten -> prefix of a unit."""
 
 
 @dataclass(frozen=True)
@@ -68,7 +63,8 @@ class Estimate:
         powers = (9, 6, 3, 0) if self.unit[0] == "N" else (0, -3, -6) if self.unit in ("s", "m") else (0,)
         power = next((power for power in powers if size >= 10.0**power), powers[-1])
         first = f"{self.standard_error / 10.0**power:.1e}".partition("e")[2]
-        return 10.0**power, 1 - int(first or 0), PREFIXES[power] + self.unit
+        prefix = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "\u00b5"}[power]
+        return 10.0**power, 1 - int(first or 0), prefix + self.unit
 
     def _written(self, number: float) -> str:
         scale, digits, _ = self._style
@@ -146,10 +142,8 @@ def notes_of(found: Fit) -> list[str]:
         times, period = record.rows[:, 0], found.oscillator.period
         rows = period / float(np.median(np.diff(times)))
         if abs(rows - round(rows)) * (times[-1] - times[0]) < period:
-            notes.append(
-                f"{round(rows)} rows a drive period, so that all impacts lie alike between two of them: "
-                "errors of gap, restitution and delay are too small; record at another rate"
-            )
+            why = f"{round(rows)} rows a drive period, so that all impacts lie alike between two of them"
+            notes.append(f"{why}: errors of gap, restitution and delay are too small; record at another rate")
     return notes
 
 

@@ -83,8 +83,7 @@ class Record:
     def units(self, noise: float) -> Array:
         """Standard deviation of each observed number if that of x is `noise`; shape of `observed`."""
         if self.kind == "transitions":
-            errors = self.rows[:, 3:] if len(self.columns) > 3 else np.full((len(self.rows), 1), noise)
-            return np.asarray(errors)
+            return self.rows[:, 3:] if len(self.columns) > 3 else np.full((len(self.rows), 1), noise)
         each = [1.0, 2.0 * math.pi * (self.frequency or 1.0)][: self.observed.shape[1]]
         return np.broadcast_to(noise * np.array(each), self.observed.shape)
 
@@ -166,10 +165,8 @@ def _check(record: Record, path: Path) -> None:
         wrong = (rows[:, 0] <= 0.0) | (rows[:, 1] % 1 != 0) | (rows[:, 1] < 1) | (rows[:, 2] <= -1.0)
         wrong |= np.any(rows[:, 3:] <= 0.0, axis=1)
         if np.any(wrong):
-            raise InvalidValue(
-                f"row {int(np.argmax(wrong)) + 1} of {path} needs a frequency above 0 Hz, a whole period, an "
-                "excess above -1 and an error above 0"
-            )
+            needs = "a frequency above 0 Hz, a whole period, an excess above -1 and an error above 0"
+            raise InvalidValue(f"row {int(np.argmax(wrong)) + 1} of {path} needs {needs}")
 
 
 def synthetic(
