@@ -16,7 +16,7 @@ from studies.__main__ import main
 from studies.experiment.hysteresis.__main__ import Accuracy, Causes, judge
 from studies.experiment.hysteresis.model import CAUSES, DESCRIPTIONS
 from studies.experiment.soft_wall.model import loss_of_stability
-from studies.measurement.identify import next_measurement
+from studies.measurement.next_measurement import model as next_measurement
 from studies.methods.work_precision.problems import problems_of
 from studies.shell import plotting
 from studies.shell.executors import progress

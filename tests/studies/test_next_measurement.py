@@ -12,9 +12,9 @@ from scipy.optimize import least_squares
 from beam import single_mode
 from contact import DelayedRestitution, HarmonicDrive, ImpactOscillator, Stop, simulate
 from contact.orbits import Shooting
-from studies.measurement.identify import figure
-from studies.measurement.identify import next_measurement as design
-from studies.measurement.identify.next_measurement import Nodes, Plan, covariance, errors_of, measurement
+from studies.measurement.next_measurement import figure
+from studies.measurement.next_measurement import model as design
+from studies.measurement.next_measurement.model import Nodes, Plan, covariance, errors_of, measurement
 from studies.physics.parameters import with_values
 
 PLAN = Plan()

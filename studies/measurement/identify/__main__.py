@@ -36,7 +36,7 @@ synthetic ones, with 0.5 um of read-out noise, are made and fitted.
 The base moves as Z sin(2 pi f t + phase).  The time t is that of the record's stamps.
 
 --next NAMES finds the next measurement: the drive frequency and excess at which the strobes of one orbit
-determine these parameters best (studies.measurement.identify.next_measurement).  The oscillator is Eq. (1)
+determine these parameters best (studies.measurement.next_measurement).  The oscillator is Eq. (1)
 with the restitution and the constant delay of the fit.  A place counts if the orbit outlives its errors.
 
 Run:     python -m studies identify [RECORD.csv --fit T tau gap phase] [--next NAMES]
@@ -54,30 +54,16 @@ from functools import partial
 from pathlib import Path
 from typing import Annotated
 
-import numpy as np
-
 from beam import InvalidValue, Refusal
 from contact import ImpactOscillator
-from studies.measurement.identify import figure
 from studies.measurement.identify.diagnosis import contradictions, wanders
 from studies.measurement.identify.displacement import SENSOR
 from studies.measurement.identify.estimates import estimates_of, report
 from studies.measurement.identify.fit import fit as fitted
-from studies.measurement.identify.next_measurement import (
-    EXCESSES,
-    FREQUENCIES_HZ,
-    THIN,
-    LetterOrbits,
-    Measurement,
-    Plan,
-    answer,
-    best,
-    letter_rows,
-    measurements_at,
-)
 from studies.measurement.identify.records import Kind, NoAnswer, Record, read_record, synthetic
 from studies.measurement.identify.result import Fit
-from studies.measurement.identify.soundness import notes_of
+from studies.measurement.next_measurement.figure import tabulated
+from studies.measurement.next_measurement.model import EXCESSES, FREQUENCIES_HZ, THIN, Measurement, Plan
 from studies.physics.parameters import (
     Description,
     described,
@@ -90,12 +76,10 @@ from studies.shell.options import POSITIONAL, Within
 from studies.shell.scene import Scene, corresponding, harmonic, periods_of
 from studies.shell.study import Run, study
 
+STEADY = ("free_period", "decay_rate", "gap", "amplitude")
 USUAL: Mapping[Kind, tuple[str, ...]] = {
     "strobe": ("free_period", "decay_rate", "gap", "restitution", "stiffness"),
-    "displacement": (
-        *("free_period", "decay_rate", "gap", "amplitude"),
-        *("restitution", "delay", "stiffness", "frequency"),
-    ),
+    "displacement": (*STEADY, "restitution", "delay", "stiffness", "frequency"),
     "transitions": ("free_period", "restitution"),
 }
 """The parameters that are fitted to a kind of record by default, as far as the oscillator has them."""
@@ -106,7 +90,6 @@ EXAMPLES: Mapping[Kind, Description] = {
     "transitions": "one_mode",
 }
 FREQUENCY_HZ, SEED = 22.20, 1996  # of the example: the letter's p5
-BEST = ("frequency_hz", "excess", "period", "errors", "together")
 
 
 def frequency_of(record: Record, scene: Scene) -> float:
@@ -116,13 +99,6 @@ def frequency_of(record: Record, scene: Scene) -> float:
     if record.frequency is None and record.kind == "strobe":
         raise InvalidValue("the record does not say the frequency of the drive: give --drive HZ MM")
     return record.frequency or corresponding(scene, FREQUENCY_HZ)
-
-
-def in_step(record: Record, oscillator: ImpactOscillator) -> int:
-    """Rows a drive period if that is a whole number within what the record resolves; else 0."""
-    times = record.rows[:, 0]
-    rows = oscillator.period / float(np.median(np.diff(times)))
-    return round(rows) if abs(rows - round(rows)) * (times[-1] - times[0]) < oscillator.period else 0
 
 
 def usual(record: Record, oscillator: ImpactOscillator) -> tuple[str, ...]:
@@ -217,14 +193,6 @@ def identify(
     first, *_ = found
     fit_scene = as_scene(scene, found[first])  # before the report: it refuses values that no scene has
     results = report(run, found)
-    for name, one in found.items():
-        for note in notes_of(one.record, dict(zip(one.names, one.estimate, strict=True)).get("amplitude")):
-            run.say(f"{name}: {note}")
-        if one.record.kind == "displacement" and (rows := in_step(one.record, one.oscillator)):
-            run.say(
-                f"{name}: {rows} rows a drive period, so that all impacts lie alike between two of them: "
-                "errors of gap, restitution and delay are too small; record at another rate"
-            )
     about = [f"# {row.parameter} {row.value}" for row in results["rows"] if row.record == first]
     run.text("fitted.toml", "\n".join([*about, "", fit_scene.dump()]))
     if wanted:
@@ -245,54 +213,33 @@ def examples(scene: Scene, run: Run, delay: float | None) -> dict[str, tuple[Rec
     return found
 
 
-def reason(one: Fit) -> str:
-    """Why the residuals of a fit are unlike noise."""
-    if one.record.kind != "displacement":
-        return "the model is too small for the record"
-    (times, values), frequency = one.record.rows.T, one.oscillator.driven.frequency
-    residuals, period = one.residuals[:, 0], int(one.problem.prediction.period)
-    found = wanders(times, values, residuals, frequency)
-    found += contradictions(times, values, residuals, frequency, period)
-    return "; ".join([*dict.fromkeys(found)][:2])
-
-
 def answered(one: Fit) -> Fit:
-    """The fit; NoAnswer with the best values if its residuals are unlike noise."""
+    """The fit; NoAnswer with reasons and the best values if its residuals are unlike noise."""
     if not one.too_small:
         return one
+    why = ["the model is too small for the record"]
+    if one.record.kind == "displacement":
+        (times, values), residuals = one.record.rows.T, one.residuals[:, 0]
+        frequency, period = one.oscillator.driven.frequency, one.problem.prediction.period
+        why = wanders(times, values, residuals, frequency)
+        why += contradictions(times, values, residuals, frequency, period)
+    reason = "; ".join([*dict.fromkeys(why)][:2])
     best = ", ".join(f"{row.parameter} {row.value}" for row in estimates_of("", one))
-    raise NoAnswer(f"{reason(one)}; the best values found are {best}, with errors that mean little")
+    raise NoAnswer(f"{reason}; the best values found are {best}, with errors that mean little")
 
 
 def as_scene(scene: Scene, found: Fit) -> Scene:
     """The scene with the fitted oscillator."""
-    table = found.record.kind == "transitions"
-    frequencies = sorted(set(found.record.rows[:, 0])) if table else [found.oscillator.driven.frequency]
-    return fitted_scene(scene, found.oscillator, frequencies)
+    several = sorted(set(found.record.rows[:, 0])) if found.record.kind == "transitions" else []
+    return fitted_scene(scene, found.oscillator, several or [found.oscillator.driven.frequency])
 
 
 def where_to_measure(
     scene: Scene, run: Run, wanted: Sequence[str], delay: float | None, noise: float
 ) -> list[Measurement]:
-    """Tables, figure and answer of the next measurement of the `wanted` parameters; returns the best places.
-
-    The oscillator is Eq. (1) with a constant restitution and `delay` [s].
-    """
-    of = partial(described, scene, "two_parameters", delay)
+    """The best places to measure the `wanted` parameters of Eq. (1) with a constant `delay` [s]."""
     before = {name: error for name, error in Plan().before.items() if name not in wanted}
     plan, thin = Plan(names=tuple(wanted), noise=noise, before=before), THIN[run.quick]
     frequencies = [corresponding(scene, f) for f in FREQUENCIES_HZ[::thin]]
-    columns = run.map(partial(measurements_at, of, plan, EXCESSES[::thin]), frequencies, "frequencies")
-    found = [one for column in columns for one in column]
-    chosen = best(found)
-    caption = f"Standard errors of {', '.join(wanted)} by one orbit."
-    run.table("measurements", found, caption, of=Measurement, show=())
-    run.table("next", chosen, f"The five best places. {caption}", of=Measurement, show=BEST)
-    if found:
-        run.figure("next", figure.draw_plane(found, plan), figure.PLANE)
-    if run.letters:
-        letters = letter_rows(of, plan)
-        run.table("letter_orbits", letters, "The same by the letter's orbits.", of=LetterOrbits)
-        if plan.names == Plan().names:
-            run.answer("period", answer(found, letters, plan))
-    return chosen
+    of = partial(described, scene, "two_parameters", delay)
+    return tabulated(run, of, plan, frequencies, EXCESSES[::thin])

@@ -16,7 +16,7 @@ from scipy.linalg import lstsq
 from scipy.optimize import minimize_scalar
 from scipy.signal import detrend, find_peaks, medfilt
 
-from studies.measurement.identify.kicks import harmonics
+from studies.measurement.identify.spectrum import count_of, harmonics
 
 Array = NDArray[np.float64]
 
@@ -28,9 +28,8 @@ STICKING, STRAY, SURE, ALIKE, MANY = 6.0, 12.0, 8.0, 0.025, 6000
 outlier (corners: 8), of an estimate that is no chance. Part that an orbit leaves (noise of 1 %: 0.016); rows
 that suffice to see it."""
 MISREAD = {1.0: "", 1e-3: "in kHz", 2.0 * math.pi: "in rad/s", 60.0: "in 1/min", 2.0: "2 f", 0.5: "f/2"}
-MISREAD |= {
-    10.0**n: f"right if time_s is in {unit}: divide it by 1e{n}" for n, unit in ((3, "ms"), (6, "µs"))
-}
+MISREAD[1e3] = "right if time_s is in ms: divide it by 1e3"
+MISREAD[1e6] = "right if time_s is in µs: divide it by 1e6"
 """What a given drive may be, by its ratio to that of the record."""
 
 
@@ -48,18 +47,10 @@ def peaks(times: Array, values: Array) -> tuple[Array, Array]:
     return (at + np.clip(moved, -1.0, 1.0)) * (rows - 1) / (span * size), np.exp(middle - middle[0])
 
 
-def strongest_line(times: Array, values: Array) -> float:
-    """Frequency of the strongest line of a record [Hz]."""
-    return float(peaks(times, values)[0][0])
-
-
 def orbit_of(times: Array, values: Array, pace: float) -> tuple[NDArray[np.complex128], float]:
     """Lines of an orbit that repeats with `pace` [Hz], as far as rows resolve, and what they leave [m]."""
-    most = int(min(90, 0.42 * times.size / (pace * (times[-1] - times[0])), times.size / 10))
-    rows = np.sort(
-        np.random.default_rng(0).permutation(times.size)[:MANY]
-    )  # equal steps would hide some lines
-    return harmonics(times[rows], values[rows], pace, max(1, most))
+    rows = np.sort(np.random.default_rng(0).permutation(times.size)[:MANY])  # equal steps hide some lines
+    return harmonics(times[rows], values[rows], pace, count_of(times, pace))
 
 
 def repetition(times: Array, values: Array, frequency: float) -> Array:
@@ -85,36 +76,17 @@ def drive_found(times: Array, values: Array, frequency: float) -> tuple[float, s
             if abs(part) < (0.01 if words else 0.15):
                 how = words or f"off by {100.0 * part:+.3g} %"
                 return at, f"the given drive of {frequency:.6g} Hz is {how}: the record's is f = {at:.6g} Hz"
-    return float(
-        lines[0]
-    ), f"the strongest line is at {lines[0]:.6g} Hz, none at the given {frequency:.6g} Hz"
-
-
-def unit_of(found: float, given: float, what: str) -> str | None:
-    """Words for the unit in which the record or the given value of `what` would agree with the other one."""
-    base = "seconds" if "period" in what or "time" in what else "metres"
-    units = {1e3: (f"milli{base}", "divide by 1000"), 1e6: (f"micro{base}", "divide by 1e6")}
-    if "frequency" in what:
-        units = {1e-3: ("kilohertz", "multiply by 1000"), 1e-6: ("megahertz", "multiply by 1e6")}
-    units |= {1.0 / 9.81: ("g", "multiply by 9.81"), 2.0 * math.pi: ("radians", "divide by 2 pi")}
-    for factor, (unit, remedy) in units.items():
-        for one, other, thing in ((given, found, f"the given {what}"), (found, given, "the record")):
-            if abs(one - factor * other) < 0.15 * abs(factor * other):
-                return f"{thing} looks like {unit}: {remedy}"
-    return None
+    at = float(lines[0])
+    return at, f"the strongest line is at {at:.6g} Hz, none at the given {frequency:.6g} Hz"
 
 
 def off_neighbours(times: Array, values: Array) -> tuple[Array, float]:
     """How far rows are off both parabolas beside them, over the noise, and the noise [m], by the median."""
-
-    def ahead(t: Array, x: Array) -> Array:
-        a, b, c, d = (t[i : t.size - 3 + i] for i in range(4))
-        parts = [(d - q) * (d - r) / ((p - q) * (p - r)) for p, q, r in ((a, b, c), (b, c, a), (c, a, b))]
-        off = x[3:] - sum(part * x[i : x.size - 3 + i] for i, part in enumerate(parts))
-        return np.append(np.zeros(3), off / np.sqrt(1.0 + sum(part**2 for part in parts)))
-
-    before, after = ahead(times, values), ahead(-times[::-1], values[::-1])[::-1]
-    noise = max(1.4826 * float(np.median(np.abs(before))), 1e-4 * float(np.ptp(values)))
+    t, x = ([one[i : one.size - 3 + i] for i in range(4)] for one in (times, values))
+    weights = 1.0 / np.array([np.prod([a - b for b in t if b is not a], axis=0) for a in t])
+    third = np.sum(weights * x, axis=0) / np.linalg.norm(weights, axis=0)  # divided difference, as a reading
+    noise = max(1.4826 * float(np.median(np.abs(third))), 1e-4 * float(np.ptp(values)))
+    before, after = np.append(np.zeros(3), third), np.append(-third, np.zeros(3))
     return np.where(before * after > 0.0, np.minimum(np.abs(before), np.abs(after)), 0.0) / noise, noise
 
 
@@ -126,10 +98,8 @@ def poor_rows(times: Array, values: Array, off: Array, frequency: float) -> list
     found = [f"readings stick at {one}: the sensor or the recorder saturates" for one in where]
     rows, phase = np.flatnonzero(off > STRAY), np.exp(2j * math.pi * frequency * times[off > 0.5 * STRAY])
     if 0 < rows.size < 3 or (rows.size and abs(phase.mean()) < 0.8):
-        first = f"the first in row {rows[0] + 1} at {times[rows[0]]:.4g} s"
-        found += [
-            f"{rows.size} of {times.size} rows are outliers, {first}: {STRAY:g} standard deviations off"
-        ]
+        first = f"the first in row {rows[0] + 1} at {times[rows[0]]:.4g} s: {STRAY:g} standard deviations off"
+        found.append(f"{rows.size} of {times.size} rows are outliers, {first}")
     return found
 
 
@@ -137,7 +107,7 @@ def defects(times: Array, values: Array, frequency: float | None) -> list[str]:
     """What the record alone shows, with the drive `frequency` [Hz] if it is given; empty if it is sound."""
     if np.ptp(values) == 0.0:
         return ["the record is constant"]
-    rows, span, line = times.size, float(times[-1] - times[0]), strongest_line(times, values)
+    rows, span, line = times.size, float(times[-1] - times[0]), float(peaks(times, values)[0][0])
     other = drive_found(times, values, frequency) if frequency else None
     cycles = (other[0] if other else frequency or line) * span * rows / (rows - 1)
     pace = f"{rows / cycles:.2g} rows a drive period: the sampling ({(rows - 1) / span:.3g} Hz) is too slow"
@@ -154,24 +124,22 @@ def defects(times: Array, values: Array, frequency: float | None) -> list[str]:
 
 
 def added(times: Array, residuals: Array, pace: float) -> list[str]:
-    """A hum and a drift that last, beside what repeats with the orbit."""
+    """A hum and a drift that last, the same in each third of a record, beside what repeats with the orbit."""
     span, rows, found = float(times[-1] - times[0]), times.size, list[str]()
-    t, turn = (times - times.mean()) / span, 2.0j * math.pi * times
-    orders = np.arange(1, max(2, int(min(30, 0.42 * rows / (pace * span), rows / 10))))
-    waves = np.exp(pace * turn * orders[:, None])
-    matrix, thirds = np.vstack([t, t**0, waves.real, waves.imag]).T, np.array_split(np.arange(rows), 3)
-    coefficients = lstsq(matrix, residuals)[0]
-    rest, slope = residuals - matrix @ coefficients, float(coefficients[0])
-    at = strongest_line(times, rest)
-    # a wave or a slope that lasts is the same in each third
-    tones = [2.0 * np.mean((rest * np.exp(-at * turn))[third]) for third in thirds]
+    t, thirds = (times - times.mean()) / span, np.array_split(np.arange(rows), 3)
+    waves = np.exp(2j * math.pi * pace * np.outer(np.arange(1, 1 + min(29, count_of(times, pace))), times))
+    matrix = np.vstack([t, t**0, waves.real, waves.imag]).T
+    slope, *_ = coefficients = lstsq(matrix, residuals)[0]
+    rest = residuals - matrix @ coefficients
+    at = float(peaks(times, rest)[0][0])
+    tones = [2.0 * np.mean((rest * np.exp(-2j * math.pi * at * times))[third]) for third in thirds]
     tone, apart = np.mean(tones), abs(at - pace * max(1, round(at / pace))) * span
-    lasts = max(np.abs(tones - tone)) < 0.5 * abs(tone)
-    if lasts and apart > 1.0 and abs(tone) * math.sqrt(rows / 2) > SURE * rest.std():
+    lasts = apart > 1.0 and max(np.abs(tones - tone)) < 0.5 * abs(tone)
+    if lasts and abs(tone) * math.sqrt(rows / 2) > SURE * rest.std():
         found = [f"a line at {at:.4g} Hz of {1e3 * abs(tone):.2g} mm that is no harmonic of the orbit: hum"]
     slopes = [np.polyfit(t[third], (rest + slope * t)[third], 1)[0] / slope for third in thirds]
     if abs(slope) * math.sqrt(rows / 12) > SURE * rest.std() and min(slopes) > 0.5:
-        found += [f"a drift of {1e3 * slope / span:.2g} mm/s"]
+        found.append(f"a drift of {1e3 * slope / span:.2g} mm/s")
     return found
 
 
@@ -187,18 +155,19 @@ def walked(times: Array, values: Array, frequency: float, period: int) -> list[s
 
 
 def filtered(times: Array, values: Array, predicted: Array, pace: float) -> list[str]:
-    """A filter of one pole: readings over predictions, line by line, fall as (1 + (nu/corner)^2)^(-1/2)."""
-    rate, (read, noise) = times.size / (times[-1] - times[0]), orbit_of(times, values, pace)
-    known = orbit_of(times, predicted, pace)[0]
-    error = noise / math.sqrt(2.0 * min(times.size, MANY)) / np.maximum(np.abs(known[1:]), 1e-300)
-    nu, corners = pace * np.arange(1, known.size), np.append(np.geomspace(pace, 4.0 * rate, 200), 1e9 * rate)
-    off = np.log(np.abs(read[1:] / known[1:])) + 0.5 * np.log1p((nu / corners[:, None]) ** 2)
-    weight = np.where(error < 0.1, np.hypot(error, 3e-4) ** -2.0, 0.0)
-    left = ((off - (off @ weight)[:, None] / max(weight.sum(), 1e-300)) ** 2) @ weight
-    best = int(np.argmin(left))
-    if np.sum(weight > 0.0) < 6 or left[best] > 0.3 * left[-1] or left[-1] - left[best] < SURE**2:
+    """A filter of one pole: predictions over readings, line by line, have squares 1 + (nu/corner)^2."""
+    (read, noise), known = orbit_of(times, values, pace), orbit_of(times, predicted, pace)[0]
+    error = noise / math.sqrt(2.0 * min(times.size, MANY))
+    order = 1 + np.flatnonzero(np.abs(known[1:]) > 10.0 * error)
+    if order.size < 6:
         return []
-    return [f"lines fall below the predicted ones as by a low-pass near {corners[best]:.0f} Hz"]
+    square, nu = np.abs(known[order] / read[order]) ** 2, pace * order
+    weight = 0.5 / np.hypot(error / np.abs(read[order]), 3e-4) / square
+    (slope, level), spread = np.polyfit(nu**2, square, 1, w=weight, cov="unscaled")
+    left, gain = np.sum((weight * (square - level - slope * nu**2)) ** 2), slope**2 / spread[0, 0]
+    if min(slope, level) <= 0.0 or gain < max(SURE**2, 2.3 * left):
+        return []
+    return [f"lines fall below the predicted ones as by a low-pass near {math.sqrt(level / slope):.0f} Hz"]
 
 
 def wanders(times: Array, values: Array, residuals: Array, frequency: float) -> list[str]:
@@ -219,15 +188,11 @@ def contradictions(times: Array, values: Array, residuals: Array, frequency: flo
     if period == 0:
         left = repetition(times, values, frequency)
         period = int(np.argmax(left < 1.3 * left.min())) + 1
-    pace, predicted, bare = frequency / period, values - residuals, residuals - medfilt(residuals, 5)
-    off = off_neighbours(times, values)[0]
-    stray = np.minimum(np.abs(bare) / (1.4826 * np.median(np.abs(bare[bare != 0.0]))), 3.0 * off)
+    pace, bare = frequency / period, np.abs(residuals - medfilt(residuals, 5))
+    off = 3.0 * off_neighbours(times, values)[0]
+    stray = np.minimum(bare / (1.4826 * np.median(bare[bare > 0.0])), off)
     found = added(times, residuals, pace) + poor_rows(times, values, stray, frequency)
     found += walked(times, values, frequency, period)
-    t = (times - times.mean()) / (times[-1] - times[0])
-    change = lstsq(np.array([t * predicted, predicted, t**0]).T, residuals)[0][0]
-    if abs(change) * (t * predicted).std() > 0.6 * residuals.std():
-        found += [f"the amplitude changes by {100.0 * change:.2g} % through the record"]
-    if found := found or filtered(times, values, predicted, pace):
-        return found
-    return wanders(times, values, residuals, frequency) or ["the model is too small for the record"]
+    found = found or filtered(times, values, values - residuals, pace)
+    found = found or wanders(times, values, residuals, frequency)
+    return found or ["the model is too small for the record"]

@@ -16,17 +16,12 @@ from studies.measurement.identify.result import Fit
 from studies.physics.parameters import parameters_of
 from studies.shell.run import Run
 
-TRADE = 0.95
-"""Correlation from which on two parameters trade off."""
-
-NOTABLE, MOST = 0.5, 10
-"""Size of the correlations that are shown, and how many of a fit."""
+TRADE, NOTABLE, MOST, UNLIKE = 0.95, 0.5, 10, 2.0
+"""Correlations from which on two parameters trade off, and from which on they are shown; how many; ratio of
+a fitted amplitude to a given one that contradicts it (clamped beams: 1.57)."""
 
 SHOWN = ("record", "parameter", "value", "interval", "began", "in_scene")
 """Columns of the estimates on the terminal."""
-
-PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "\u00b5"}
-"""Power of ten -> prefix of a unit."""
 
 
 @dataclass(frozen=True)
@@ -68,7 +63,8 @@ class Estimate:
         powers = (9, 6, 3, 0) if self.unit[0] == "N" else (0, -3, -6) if self.unit in ("s", "m") else (0,)
         power = next((power for power in powers if size >= 10.0**power), powers[-1])
         first = f"{self.standard_error / 10.0**power:.1e}".partition("e")[2]
-        return 10.0**power, 1 - int(first or 0), PREFIXES[power] + self.unit
+        prefix = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "\u00b5"}[power]
+        return 10.0**power, 1 - int(first or 0), prefix + self.unit
 
     def _written(self, number: float) -> str:
         scale, digits, _ = self._style
@@ -103,22 +99,18 @@ class Quality:
 def estimates_of(name: str, found: Fit) -> list[Estimate]:
     """The rows of a fit."""
     units = {name: one.unit for name, one in parameters_of(found.oscillator).items()} | UNITS
-    numbers = np.vstack(
-        [found.start, found.estimate, found.errors, found.intervals().T, found.before]
-    ).tolist()
-    words, correlations = (found.names, [units[one] for one in found.names]), found.correlations.tolist()
-    rows = zip(*words, *numbers, map(tuple, correlations), strict=True)
+    columns = found.start, found.estimate, found.errors, *found.intervals().T, found.before
+    words, correlations = [units[one] for one in found.names], map(tuple, found.correlations.tolist())
+    rows = zip(found.names, words, *(column.tolist() for column in columns), correlations, strict=True)
     return [Estimate(name, *row) for row in rows]
 
 
 def correlated(name: str, found: Fit) -> list[Correlation]:
     """The pairs of a fit whose correlation is largest in size, the largest first."""
-    pairs = [
-        Correlation(name, found.names[i], found.names[k], float(found.correlations[i, k]))
-        for i, k in combinations(range(len(found.names)), 2)
-        if abs(found.correlations[i, k]) > NOTABLE
-    ]
-    return sorted(pairs, key=lambda pair: -abs(pair.correlation))[:MOST]
+    size, names = np.abs(found.correlations), found.names
+    pairs = sorted(combinations(range(len(names)), 2), key=lambda pair: -size[pair])[:MOST]
+    shown = [(i, k) for i, k in pairs if size[i, k] > NOTABLE]
+    return [Correlation(name, names[i], names[k], float(found.correlations[i, k])) for i, k in shown]
 
 
 def traded(found: Fit, quick: bool) -> list[Profile]:
@@ -139,20 +131,36 @@ def traded(found: Fit, quick: bool) -> list[Profile]:
     return rows
 
 
+def notes_of(found: Fit) -> list[str]:
+    """What was changed of a record, and what contradicts it or makes its errors too small."""
+    record, notes = found.record, [*found.record.notes]
+    given, fitted = record.amplitude, dict(zip(found.names, found.estimate, strict=True)).get("amplitude")
+    if given and fitted and not 1.0 / UNLIKE < fitted / given < UNLIKE:
+        both = f"{1e3 * fitted:.4g} mm contradicts the given {1e3 * given:.4g} mm"
+        notes.append(f"the fitted amplitude of {both}")
+    if record.kind == "displacement":
+        times, period = record.rows[:, 0], found.oscillator.period
+        rows = period / float(np.median(np.diff(times)))
+        if abs(rows - round(rows)) * (times[-1] - times[0]) < period:
+            why = f"{round(rows)} rows a drive period, so that all impacts lie alike between two of them"
+            notes.append(f"{why}: errors of gap, restitution and delay are too small; record at another rate")
+    return notes
+
+
 def report(run: Run, found: Mapping[str, Fit]) -> dict[str, Any]:
-    """Tables and figure of the fits."""
+    """Tables, figure and notes of the fits."""
     profiles = {name: traded(one, run.quick) for name, one in found.items()}
     estimates = [row for name, one in found.items() for row in estimates_of(name, one)]
     caption = "Values with standard errors, 90 % intervals, where the fit began, and the scene's values."
     run.table("parameters", estimates, caption, of=Estimate, show=SHOWN)
     pairs = [pair for name, one in found.items() for pair in correlated(name, one)]
     run.table("correlations", pairs, "The largest correlations, above 0.5 in size.", of=Correlation)
-    quality = [
-        Quality(name, len(one.residuals), one.noise, one.freedom, one.chance) for name, one in found.items()
-    ]
+    quality = [Quality(name, len(f.residuals), f.noise, f.freedom, f.chance) for name, f in found.items()]
     run.table("quality", quality, "The residuals of the fits.", of=Quality)
     points = [row for rows in profiles.values() for row in rows]
     run.table("profile", points, "Likelihood where two parameters trade off.", of=Profile, show=())
     run.arrays("residuals", **{f"residuals_{name}": one.residuals for name, one in found.items()})
     run.figure("identify", figure.draw(found, profiles), figure.CAPTION)
+    for name, note in [(name, note) for name, one in found.items() for note in notes_of(one)]:
+        run.say(f"{name}: {note}")
     return {"rows": estimates, "quality": quality}

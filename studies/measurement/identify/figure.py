@@ -1,4 +1,4 @@
-"""Each record with its fit, residuals and trade-off; the plane of the next measurement."""
+"""Each record with its fit, residuals and trade-off."""
 
 from __future__ import annotations
 
@@ -6,12 +6,9 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from studies import letter
-from studies.measurement.identify.next_measurement import STABLE, Measurement, Plan, best
 from studies.measurement.identify.profiles import Profile
 from studies.measurement.identify.result import Fit
 from studies.physics.parameters import parameters_of
@@ -19,33 +16,14 @@ from studies.shell import plotting
 
 CAPTION = (
     "Each record with its fit (left), residuals (middle), and the profile likelihood of the two parameters "
-    "that trade off most (blue: $\\chi^2$, dashed the 90 % interval; red: the other, fitted again), or the "
-    "correlations of all (right)."
+    "that trade off most (dashed: the 90 % interval), or the correlations of all (right)."
 )
-PLANE = (
-    "Standard errors over frequency and excess by the best orbit at each place; stars: the letter at an "
-    "excess of 1e-3; numbers: the best five places; grey: the orbit does not outlive its errors."
-)
-SHOWN = 6
-"""Drive periods of a displacement that are shown."""
+SHOWN, DEPTH, DARK = 6, 2.71, 0.6
+"""Drive periods of a displacement that are shown; rise of chi^2 at the ends of a 90 % interval; correlation
+from which on its cell is dark."""
 
 FITTED: plotting.Style = {"linestyle": "none", "marker": "_", "color": "black", "zorder": 5, "label": "fit"}
 DOTS: plotting.Style = {"linestyle": "none", "marker": ".", "markersize": 2, "rasterized": True}
-
-DEPTH = 2.71
-"""Rise of chi^2 at the ends of a 90 % interval."""
-
-DARK = 0.6
-"""Correlation from which on its cell is dark."""
-
-ERRORS = {
-    "free_period": ("error of $T$ (ms)", 1e3),
-    "decay_rate": ("error of $\\mu$ (1/s)", 1.0),
-    "gap": ("error of the gap (mm)", 1e3),
-    "restitution": ("error of $\\tau$", 1.0),
-    "delay": ("error of the delay (\u00b5s)", 1e6),
-}
-"""Parameter -> label and scale of its error."""
 
 
 @plotting.in_house_style
@@ -56,7 +34,8 @@ def draw(found: Mapping[str, Fit], profiles: Mapping[str, Sequence[Profile]]) ->
     for i, ((name, one), row) in enumerate(zip(found.items(), axes, strict=True)):
         _record(row[0], row[1], one)
         _trade(row[2], one, profiles[name])
-        for k, words in enumerate((name, "residuals", "")):
+        shown = "profile" if profiles[name] else "correlations"
+        for k, words in enumerate((f"{name}: record and fit", "residuals", shown)):
             plotting.panel(row[k], 3 * i + k, words)
     return figure
 
@@ -73,13 +52,11 @@ def _record(left: Any, middle: Any, one: Fit) -> None:
         left.plot(place, unit * seen, **DOTS, color=plotting.SKY, label="record")
         left.plot(place, unit * fitted, color=plotting.BLACK, linewidth=0.6, label="fit")
         left.set_xlim(place[0], place[0] + 1e3 * SHOWN * one.oscillator.period)
-    elif kind == "strobe":
-        place, across = np.arange(len(seen), dtype=float), ("strobe", "1")
-        left.plot(place, unit * seen, **plotting.points(1), label="record")
-        left.plot(place, unit * fitted, **FITTED)
     else:
-        place, across = rows[:, 0], ("drive frequency", "Hz")
-        errors = unit * one.record.units(one.noise)[:, 0]
+        place, across, errors = np.arange(len(seen), dtype=float), ("strobe", "1"), None
+        if table:
+            place, across = rows[:, 0], ("drive frequency", "Hz")
+            errors = unit * one.record.units(one.noise)[:, 0]
         left.errorbar(place, unit * seen, errors, **plotting.points(1), label="record")
         left.plot(place, unit * fitted, **FITTED)
     middle.plot(place, fine * residuals, **DOTS, color=plotting.BLUE)
@@ -113,52 +90,15 @@ def _trade(axis: Any, one: Fit, rows: Sequence[Profile]) -> None:
         return scale * np.array(values)
 
     value = shown(axis.xaxis, own[0].parameter, [row.value for row in own])
-    axis.plot(value, [row.depth for row in own], **plotting.series(1))
+    lines = axis.plot(value, [row.depth for row in own], **plotting.series(1), label="$\\chi^2$")
     axis.axhline(DEPTH, **plotting.GUIDE)
     axis.locator_params(axis="x", nbins=5)
+    axis.margins(y=0.25)
     plotting.label(axis.yaxis, "rise of $\\chi^2$")
     fitted = shown(other.yaxis, own[0].other, [row.other_value for row in own])
-    other.plot(value, fitted, **plotting.series(2))
+    lines += other.plot(value, fitted, **plotting.series(2), label=own[0].other.replace("_", " "))
+    for side, line in zip((axis, other), lines, strict=True):
+        side.tick_params(axis="y", colors=line.get_color())
+        side.yaxis.label.set_color(line.get_color())
     other.spines["right"].set_visible(True)
-
-
-def edges(centres: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Borders of cells around rising `centres`, halfway between them."""
-    half = 0.5 * np.diff(centres) if centres.size > 1 else np.full(1, 0.5)
-    return np.concatenate([centres[:1] - half[:1], centres[:-1] + half, centres[-1:] + half[-1:]])
-
-
-@plotting.in_house_style
-def draw_plane(found: Sequence[Measurement], plan: Plan) -> Figure:
-    """The error of each wanted parameter over frequency and excess."""
-    places = [(round(one.frequency_hz, 6), round(one.excess, 9)) for one in found]
-    across, up = (sorted({place[i] for place in places}) for i in (0, 1))
-    figure, axes = plotting.new_figure(
-        1, len(plan.names), width=plotting.PAGE, height=0.082, sharey=True, squeeze=False
-    )
-    cells = edges(np.array(across)), STABLE * np.sinh(edges(np.arcsinh(np.array(up) / STABLE)))
-    shown = dict(sorted(zip(places, found, strict=True), key=lambda pair: (pair[1].kept, -pair[1].together)))
-    for k, (axis, name) in enumerate(zip(axes.flat, plan.names, strict=True)):
-        words, scale = ERRORS.get(name, (f"error of {name} (SI units)", 1.0))
-        seen, lost = np.full((2, len(up), len(across)), np.nan)
-        for (f, excess), one in shown.items():
-            (seen if one.kept else lost)[up.index(excess), across.index(f)] = one.errors[k] * scale
-        axis.pcolormesh(*cells, 0.0 * lost, cmap="Greys", vmin=-1.0, vmax=3.0)
-        if np.isfinite(seen).any():
-            mesh = axis.pcolormesh(*cells, seen, cmap="viridis_r", norm=LogNorm())
-            bar = figure.colorbar(mesh, ax=axis, location="top", label=words)
-            bar.ax.xaxis.set_minor_formatter("")
-        axis.plot(list(letter.PERIODS), [1e-3] * 6, **plotting.LETTER_POINTS)
-        for number, one in enumerate(best(found), 1):
-            axis.annotate(
-                str(number),
-                (one.frequency_hz, one.excess),
-                ha="center",
-                va="center",
-                fontsize=plotting.NOTE,
-                bbox={"boxstyle": "circle,pad=0.15", "fc": "white", "lw": 0.5},
-            )
-        axis.set_yscale("symlog", linthresh=STABLE)
-        plotting.label(axis.xaxis, "drive frequency", "Hz")
-    plotting.label(axes[0, 0].yaxis, plotting.EXCESS)
-    return figure
+    axis.legend(handles=lines, loc="upper center")

@@ -16,8 +16,9 @@ from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
 from contact import ImpactOscillator
-from studies.measurement.identify.diagnosis import off_neighbours, repetition, strongest_line
+from studies.measurement.identify.diagnosis import off_neighbours, peaks, repetition
 from studies.measurement.identify.displacement import SENSOR, Displacement
+from studies.measurement.identify.kicks import poles
 from studies.measurement.identify.records import NoAnswer, Record
 from studies.physics.parameters import with_values
 
@@ -39,29 +40,25 @@ class Linear:
 
     def __init__(self, record: Record) -> None:
         (self.times, self.values), self.record = record.rows.T, record
-        line = record.frequency or strongest_line(self.times, self.values)
+        line = record.frequency or float(peaks(self.times, self.values)[0][0])
         grid = [np.array([line, at / line, rate * line]) for at in FREE for rate in DECAYS]
-        begun = min(grid, key=lambda one: float(np.sum(self.left(one)[1] ** 2)))
+        begun = min(grid, key=lambda one: float(np.sum(self.left(*one)[1] ** 2)))
 
         def off(logs: Array) -> Array:
-            return self.left(begun * np.exp(logs))[1]
+            return self.left(*begun * np.exp(logs))[1]
 
-        found = least_squares(
-            lambda u: self.left(begun * np.exp(u))[1], np.zeros(3), x_scale="jac", max_nfev=60
-        )
-        self.frequency, self.free_period, self.decay_rate = begun * np.exp(found.x)
-        parts, rest = self.left(begun * np.exp(found.x))
-        self.offset, self.steady, self.free = parts[0], parts[1] - 1j * parts[2], parts[3] - 1j * parts[4]
-        alone, self.rest = self.left(np.array([self.frequency]))[1], float(rest.std())
+        best = begun * np.exp(least_squares(off, np.zeros(3), x_scale="jac", max_nfev=60).x)
+        self.frequency, self.free_period, self.decay_rate = best.tolist()
+        (self.offset, *real, imag, last), rest = self.left(*best)
+        self.steady, self.free = complex(real[0], -imag), complex(real[1], -last)
+        self.rest, alone = float(rest.std()), self.left(self.frequency)[1]
         self.decays = rest.size * (alone.var() / max(rest.var(), 1e-300) - 1.0) > SEEN
 
-    def left(self, numbers: Array) -> tuple[Array, Array]:
-        """Linear coefficients and residuals, with f, T and c or with f alone."""
-        waves = [np.exp(2j * math.pi * numbers[0] * self.times)]
-        if numbers.size > 1:
-            pole = 2j * math.pi / numbers[1] - 0.5 * numbers[2]
-            waves.append(np.exp(pole * (self.times - self.times[0])))
-        matrix = np.vstack([self.times**0, *(part for wave in waves for part in (wave.real, wave.imag))])
+    def left(self, frequency: float, *mode: float) -> tuple[Array, Array]:
+        """Offset, real and minus imaginary parts of Y and A at the first row, and residuals; or without A."""
+        rates = [2j * math.pi * frequency, *([2j * math.pi / mode[0] - 0.5 * mode[1]] if mode else [])]
+        waves = np.exp(np.outer(rates, self.times - self.times[0]))
+        matrix = np.vstack([self.times**0, waves.real, waves.imag])
         found = np.linalg.lstsq(matrix @ matrix.T, matrix @ self.values, rcond=None)[0]
         return found, self.values - found @ matrix
 
@@ -70,7 +67,7 @@ class Linear:
         """Whether this leaves noise, and less than any orbit."""
         if not self.decays or self.rest > NOISE * off_neighbours(self.times, self.values)[1]:
             return False
-        orbit = repetition(self.times, self.values, float(self.frequency)).min()
+        orbit = repetition(self.times, self.values, self.frequency).min()
         return bool(self.times.size * ((orbit / self.rest) ** 2 - 1.0) > SEEN)
 
     def start(
@@ -80,28 +77,29 @@ class Linear:
         kept, lost = ([n for n in names if (n in NAMES) == own] for own in (True, False))
         alike = [name for name in kept if name in NAMES[:RESPONSE]]
         if not kept or (not self.decays and len(alike) > 1):
-            height, pace = 1e3 * abs(self.steady), self.frequency
-            blind = (
-                f"tell {', '.join(alike[:-1])} and {alike[-1]} apart" if kept else f"tell {', '.join(lost)}"
-            )
-            raise NoAnswer(
-                f"{'a' if self.decays else 'a steady'} motion without impacts at {pace:.4g} Hz of amplitude "
-                f"{height:.3g} mm: it cannot {blind}; there is no impact in the record"
-            )
-        found = {"frequency": float(self.frequency), "gap": AWAY * float(np.abs(self.values).max())}
-        if self.decays:
-            found |= {"free_period": float(self.free_period), "decay_rate": float(self.decay_rate)}
-        at = with_values(oscillator, {n: found[n] for n in found if n in kept or n in ("gap", "frequency")})
-        drive = 1j * self.steady / at.tip_response()
+            blind = f"{', '.join(alike[:-1])} and {alike[-1]} apart" if kept else ", ".join(lost)
+            motion = f"{'a' if self.decays else 'a steady'} motion without impacts at {self.frequency:.4g} Hz"
+            height = f"of amplitude {1e3 * abs(self.steady):.3g} mm"
+            raise NoAnswer(f"{motion} {height}: it cannot tell {blind}; there is no impact in the record")
+        found = {"frequency": self.frequency, "gap": AWAY * float(np.abs(self.values).max())}
+        own = {"free_period": self.free_period, "decay_rate": self.decay_rate} if self.decays else {}
+        at = with_values(oscillator, found | {name: own[name] for name in own if name in kept})
+        base = self.steady / at.tip_response()
         if "amplitude" in kept:
-            at = with_values(at, {"amplitude": abs(drive)})
-        model, w = at.model, at.driven.angular_frequency
-        share = at.steady_response() / at.tip_response() * self.steady * np.exp(1j * w * self.times[0])
-        pole = 2j * math.pi / self.free_period - 0.5 * self.decay_rate
-        own = np.eye(model.n_modes)[model.leading_mode] / model.phi * self.free * self.decays
-        state = np.concatenate([(share + own).real, (1j * w * share + pole * own).real])
-        sensor = dict(SENSOR) | {"offset": float(self.offset), "phase": float(np.angle(drive))}
-        sensor = {name: sensor[name] if name in free else SENSOR[name] for name in sensor}
+            at = with_values(at, {"amplitude": abs(base)})
+        state = state_of(at, base, self.free * self.decays)
+        turn = 1j * np.exp(-2j * math.pi * self.frequency * self.times[0])  # a sine from time zero on
+        read = {"offset": float(self.offset), "phase": float(np.angle(turn * base))}
+        sensor = {name: read.get(name, one) if name in free else one for name, one in SENSOR.items()}
         note = f"no impact in the record: not fitted: {', '.join(lost) or 'nothing else'}"
         record = replace(self.record, notes=(*self.record.notes, note))
         return Displacement(record, at, state, sensor, free), at, tuple(kept)
+
+
+def state_of(oscillator: ImpactOscillator, base: complex, free: complex) -> Array:
+    """Modal displacements and velocities where the base is at Re(`base`), moved at the drive frequency, and
+    mode 1 moves the tip by Re(`free`) besides."""
+    model, w = oscillator.model, oscillator.driven.angular_frequency
+    share = oscillator.steady_response() * base
+    own = np.eye(model.n_modes)[model.leading_mode] / model.phi * free
+    return np.append((share + own).real, (1j * w * share + poles(oscillator) * own).real)

@@ -1,8 +1,4 @@
-"""Measured records: three kinds, distinguished by their heading, and synthetic ones.
-
-    x_m[,v_m_per_s]                        strobe points of a settled motion, a row a drive period
-    time_s,x_m                             the tip at rising times
-    frequency_hz,period,excess[,error]     a table: where p_m is lost as the drive is lowered, F/F_g - 1
+"""Measured records: three kinds, distinguished by their heading (`HEADINGS`), and synthetic ones.
 
 x is the displacement of the tip relative to the base, and the base moves as Z sin(2 pi f t). Strobe points
 begin at a strobe, a displacement at any time; stamps that begin far from zero count from the first row. Lines
@@ -87,16 +83,15 @@ class Record:
     def units(self, noise: float) -> Array:
         """Standard deviation of each observed number if that of x is `noise`; shape of `observed`."""
         if self.kind == "transitions":
-            errors = self.rows[:, 3:] if len(self.columns) > 3 else np.full((len(self.rows), 1), noise)
-            return np.asarray(errors)
+            return self.rows[:, 3:] if len(self.columns) > 3 else np.full((len(self.rows), 1), noise)
         each = [1.0, 2.0 * math.pi * (self.frequency or 1.0)][: self.observed.shape[1]]
         return np.broadcast_to(noise * np.array(each), self.observed.shape)
 
     def noisy(self, seed: int, noise: float = READ_OUT) -> Record:
         """The record with normal noise on what is observed, standard deviations as in `units`."""
         found = replace(self, rows=self.rows.copy())
-        off = np.random.default_rng(seed).standard_normal(self.observed.shape) * self.units(noise)
-        found.observed[:] += off
+        random = np.random.default_rng(seed)
+        found.observed[:] += random.standard_normal(self.observed.shape) * self.units(noise)
         return found
 
     def text(self) -> str:
@@ -127,15 +122,13 @@ def read_record(path: Path) -> Record:
         known = "; ".join(",".join(names) for names in HEADINGS)
         found = f"has the heading {','.join(heading)[:60]!r}" if kept else "is empty"
         raise InvalidValue(f"the record {path} {found}; its heading must be one of {known}")
-    cells = [line.split(",") for line in kept[1:]]
-    for i, row in enumerate(cells, 1):
+    numbers = list[float]()
+    for i, row in enumerate((line.split(",") for line in kept[1:]), 1):
         if len(row) != len(heading):
             raise InvalidValue(f"row {i} of {path} has {len(row)} cells, the heading {len(heading)}")
-    numbers = [
-        _number(cell, f"{name} in row {i}", path)
-        for i, row in enumerate(cells, 1)
-        for name, cell in zip(heading, row, strict=True)
-    ]
+        numbers += [
+            _number(cell, f"{name} in row {i}", path) for name, cell in zip(heading, row, strict=True)
+        ]
     rows = np.array(numbers, dtype=float).reshape(-1, len(heading))
     record = Record(columns=heading, rows=rows, frequency=notes.get(NOTES[0]), amplitude=notes.get(NOTES[1]))
     _check(record, path)
@@ -172,10 +165,8 @@ def _check(record: Record, path: Path) -> None:
         wrong = (rows[:, 0] <= 0.0) | (rows[:, 1] % 1 != 0) | (rows[:, 1] < 1) | (rows[:, 2] <= -1.0)
         wrong |= np.any(rows[:, 3:] <= 0.0, axis=1)
         if np.any(wrong):
-            raise InvalidValue(
-                f"row {int(np.argmax(wrong)) + 1} of {path} needs a frequency above 0 Hz, a whole period, an "
-                "excess above -1 and an error above 0"
-            )
+            needs = "a frequency above 0 Hz, a whole period, an excess above -1 and an error above 0"
+            raise InvalidValue(f"row {int(np.argmax(wrong)) + 1} of {path} needs {needs}")
 
 
 def synthetic(
@@ -201,21 +192,14 @@ def synthetic(
         folds = [Shooting(oscillator=one, period=m).fold() for one, (_, m) in pairs]
         found = [[*at, one.excess] for at, one in zip(transitions, folds, strict=True) if one is not None]
         record = Record(columns=("frequency_hz", "period", "excess"), rows=np.array(found))
-        usual = letter.AMPLITUDE_STABILITY
     else:
-        strobed = StroboscopicMap(oscillator=oscillator)
-        start = born(strobed, oscillator.excess).end
-        begin = round(start.time * drive.frequency) / drive.frequency
-        pace = 90.09 * drive.frequency
-        times = np.arange(int(periods / drive.frequency * pace)) / pace
-        asked = times if kind == "displacement" else np.arange(periods) / drive.frequency
-        motion = simulate(oscillator, start, periods=periods + 1, times=np.maximum(start.time, begin + asked))
-        rows = [oscillator.tip(motion.displacement), oscillator.tip(motion.velocity)][: 1 + velocity]
-        columns: tuple[str, ...] = ("x_m", "v_m_per_s")[: 1 + velocity]
-        if kind == "displacement":
-            rows, columns = [times, rows[0]], ("time_s", "x_m")
-        record = Record(
-            columns=columns, rows=np.column_stack(rows), frequency=drive.frequency, amplitude=drive.amplitude
-        )
-        usual = READ_OUT
+        start, strobes = born(StroboscopicMap(oscillator=oscillator), oscillator.excess).end, kind == "strobe"
+        begin, each = round(start.time * drive.frequency) / drive.frequency, 1.0 if strobes else 90.09
+        times = np.arange(int(periods * each)) / (each * drive.frequency)
+        motion = simulate(oscillator, start, periods=periods + 1, times=np.maximum(start.time, begin + times))
+        tips = [oscillator.tip(one) for one in (motion.displacement, motion.velocity)[: 1 + velocity]]
+        columns = ("x_m", "v_m_per_s")[: 1 + velocity] if strobes else ("time_s", "x_m")
+        rows = np.column_stack(tips if strobes else [times, tips[0]])
+        record = Record(columns=columns, rows=rows, frequency=drive.frequency, amplitude=drive.amplitude)
+    usual = letter.AMPLITUDE_STABILITY if kind == "transitions" else READ_OUT
     return record if seed is None else record.noisy(seed, usual if noise is None else noise)

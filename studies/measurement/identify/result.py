@@ -70,10 +70,11 @@ class Fit:
 
     @property
     def errors(self) -> Array:
-        """Standard errors; of a parameter with a profile those that would give its interval."""
+        """Standard errors; of a parameter with a profile those of the sides of its interval that end."""
         found = np.sqrt(np.diag(self.covariance))
-        for name, (low, high) in self.walks.items():
-            found[self.names.index(name)] = (high - low) / (2.0 * self.reach)
+        for i, ends in ((self.names.index(name), ends) for name, ends in self.walks.items()):
+            sides = [abs(end - self.estimate[i]) for end in ends if math.isfinite(end)]
+            found[i] = np.mean(sides) / self.reach
         return np.asarray(found)
 
     @property

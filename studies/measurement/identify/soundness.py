@@ -9,16 +9,16 @@ import numpy as np
 
 from beam import InvalidValue
 from contact import ImpactOscillator
-from studies.measurement.identify.diagnosis import defects, drive_found, unit_of
+from studies.measurement.identify.diagnosis import defects, drive_found
 from studies.measurement.identify.records import NoAnswer, Record
 from studies.physics.parameters import parameters_of, with_values
 
 MOST, DENSE = 20_000, 40
 """Rows of a displacement that are fitted at most; rows a drive period that are left of more."""
 
-OFF, APART, BEYOND, UNLIKE = 0.01, 100.0, 10.0, 2.0
-"""Part by which the given drive frequency may be off. Ratio of two lengths that may be one of units; of the
-largest strobe point to the gap; of two amplitudes that contradict each other (clamped beams: 1.57)."""
+OFF, APART, BEYOND = 0.01, 100.0, 10.0
+"""Part by which the given drive frequency may be off. Ratio of an amplitude to that of grazing which may be
+one of units; of the largest strobe point to the gap."""
 
 
 def sound(record: Record, oscillator: ImpactOscillator) -> tuple[Record, ImpactOscillator]:
@@ -37,23 +37,28 @@ def sound(record: Record, oscillator: ImpactOscillator) -> tuple[Record, ImpactO
     if (rows := times.size) > MOST:
         dense = float(rows / ((times[-1] - times[0]) * (record.frequency or oscillator.driven.frequency)))
         step = max(1, min(-(-rows // MOST), int(dense / DENSE)))
-        record = replace(record, rows=record.rows[::step][:MOST])
-        note = (
-            f"1 row in {step} of {rows} is fitted, up to {record.rows[-1, 0]:.6g} s: {len(record.rows)} rows"
-        )
-        record = replace(record, notes=(*record.notes, note))
+        kept = record.rows[::step][:MOST]
+        note = f"1 row in {step} of {rows} is fitted, up to {kept[-1, 0]:.6g} s: {len(kept)} rows"
+        record = replace(record, rows=kept, notes=(*record.notes, note))
     return record, oscillator
+
+
+def unit_of(found: float, given: float, what: str) -> str | None:
+    """Words for the unit in which the record or the given value of `what` would agree with the other one."""
+    base = "seconds" if "period" in what else "metres"
+    for factor, unit, number in ((1e3, f"milli{base}", "1000"), (1e6, f"micro{base}", "1e6")):
+        for one, other, thing in ((given, found, f"the given {what}"), (found, given, "the record")):
+            if abs(one - factor * other) < 0.15 * factor * other:
+                return f"{thing} looks like {unit}: divide by {number}"
+    return None
 
 
 def require_units(record: Record, oscillator: ImpactOscillator, found: Mapping[str, float]) -> None:
     """InvalidValue if a thousand or a million is between given values and the ones `found` in the record."""
-    length = "amplitude" if record.amplitude else "gap"
-    for name in [one for one in (length, "free_period") if one in found]:
-        value = parameters_of(oscillator)[name].value
-        apart = max(value, found[name]) > APART * min(value, found[name])
-        if apart and (words := unit_of(found[name], value, name)):
-            unit = "s" if name == "free_period" else "m"
-            both = f"{found[name]:.4g} {unit} by the record, {value:.4g} {unit} as given"
+    for name in ("amplitude" if record.amplitude else "gap", "free_period"):
+        known = parameters_of(oscillator)[name]
+        if name in found and (words := unit_of(found[name], known.value, name)):
+            both = f"{found[name]:.4g} {known.unit} by the record, {known.value:.4g} {known.unit} as given"
             raise InvalidValue(f"{name} is {both}: {words}")
 
 
@@ -61,20 +66,12 @@ def require_strobe_units(record: Record, oscillator: ImpactOscillator) -> None:
     """InvalidValue if strobe points are far beyond the stop, or the amplitude is far from grazing."""
     farthest, gap = float(np.abs(record.observed[:, 0]).max()), oscillator.stop.gap
     if farthest > BEYOND * gap:
-        words = unit_of(1e3 if farthest < 3e4 * gap else 1e6, 1.0, "x_m")
-        raise InvalidValue(f"x_m reaches {farthest:.4g} m, where the gap is {gap:.4g} m: {words}")
+        unit = "millimetres: divide by 1000" if farthest < 3e4 * gap else "micrometres: divide by 1e6"
+        both = f"x_m reaches {farthest:.4g} m, where the gap is {gap:.4g} m"
+        raise InvalidValue(f"{both}: the record looks like {unit}")
     given, least = record.amplitude or 0.0, oscillator.grazing_amplitude()
     if given > APART * least or 0.0 < given < least / APART:
         raise InvalidValue(
             f"the given amplitude is {given:.4g} m, but the tip meets the stop from {least:.4g} m on: "
             "--drive takes Hz and mm"
         )
-
-
-def notes_of(record: Record, amplitude: float | None) -> list[str]:
-    """What was changed of a record, and whether the fitted amplitude contradicts the given one."""
-    given, found = record.amplitude, list(record.notes)
-    if given and amplitude and not 1.0 / UNLIKE < amplitude / given < UNLIKE:
-        both = f"{1e3 * amplitude:.4g} mm contradicts the given {1e3 * given:.4g} mm"
-        found.append(f"the fitted amplitude of {both}")
-    return found

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from contact import ImpactOscillator
 from studies.measurement.identify.displacement import Displacement
 from studies.measurement.identify.kicks import Search, kicked_motions, poles
-from studies.measurement.identify.linear import Linear
+from studies.measurement.identify.linear import Linear, state_of
 from studies.measurement.identify.starts import TRIED, starts_at
 from studies.physics.parameters import with_values
 
@@ -38,27 +38,24 @@ def unsteady_starts(
     """
     record = linear.record
     times, x, found = *record.rows.T, list[tuple[Displacement, ImpactOscillator]]()
+    part, period = close_return(times, x, linear.frequency)
+    at = with_values(oscillator, {"frequency": linear.frequency})
     motions = kicked_motions(times, x, oscillator, record.frequency)
-    part, period = close_return(times, x, float(linear.frequency))
-    at = with_values(oscillator, {"frequency": float(linear.frequency)})
     motions += Search(times[part], x[part], at, period).found()
     likely = [one for one in motions if one.reading()["gap"] > 0.0 and one.steady != 0.0]
     pairs = [pair for one in likely[:TRIED] for pair in starts_at(record, one, oscillator, names, free, True)]
     for steady, at in pairs:
-        sensor, model, w = steady.reading(steady.extra), at.model, at.driven.angular_frequency
+        sensor, w = steady.reading(steady.extra), at.driven.angular_frequency
         tip = (x - sensor["offset"]) / sensor["scale"]
         below = tip < BELOW * at.stop.gap
         begin = int(np.argmax(below))
         least = int(np.searchsorted(times, times[begin] + SHORT * at.period))
         end = max(least, begin + int(np.argmin(np.append(below[begin:], False))))
-        turn = at.driven.amplitude * np.exp(1j * (w * times[begin:end] + sensor["phase"]))
-        pole = poles(at)[model.leading_mode]
-        wave = np.exp(pole * (times[begin:end] - times[begin]))
-        off = tip[begin:end] - (at.tip_response() * turn).imag
+        base = -1j * at.driven.amplitude * np.exp(1j * (w * times[begin:end] + sensor["phase"]))
+        wave = np.exp(poles(at)[at.model.leading_mode] * (times[begin:end] - times[begin]))
+        off = tip[begin:end] - (at.tip_response() * base).real
         a, b = np.linalg.lstsq(np.array([wave.real, -wave.imag]).T, off, rcond=None)[0]
-        own = np.eye(model.n_modes)[model.leading_mode] / model.phi * complex(a, b)
-        share = at.steady_response() * turn[0]
-        state = np.append(share.imag + own.real, (1j * w * share).imag + (pole * own).real)
+        state = state_of(at, base[0], complex(a, b))
         rest = replace(record, rows=record.rows[begin:])
         first = int(np.searchsorted(rest.rows[:, 0], times[begin] + EARLY * at.period))
         found.append((Displacement(rest, at, state, sensor, free, first=first), at))

@@ -1,0 +1,105 @@
+"""Tables and figure of the next measurement: errors over the plane of frequency and excess."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+
+import numpy as np
+from matplotlib.colors import LogNorm
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from studies import letter
+from studies.measurement.next_measurement.model import (
+    STABLE,
+    LetterOrbits,
+    Measurement,
+    Of,
+    Plan,
+    answer,
+    best,
+    letter_rows,
+    measurements_at,
+)
+from studies.shell import plotting
+from studies.shell.run import Run
+
+BEST = ("frequency_hz", "excess", "period", "errors", "together")
+"""Columns of the best places on the terminal."""
+
+PLANE = (
+    "Standard errors over frequency and excess by the best orbit at each place; stars: the letter at an "
+    "excess of 1e-3; numbers: the best five places; grey: the orbit does not outlive its errors."
+)
+
+ERRORS = {
+    "free_period": ("error of $T$ (ms)", 1e3),
+    "decay_rate": ("error of $\\mu$ (1/s)", 1.0),
+    "gap": ("error of the gap (mm)", 1e3),
+    "restitution": ("error of $\\tau$", 1.0),
+    "delay": ("error of the delay (\u00b5s)", 1e6),
+}
+"""Parameter -> label and scale of its error."""
+
+
+def tabulated(
+    run: Run, of: Of, plan: Plan, frequencies: Sequence[float], excesses: Sequence[float]
+) -> list[Measurement]:
+    """Tables, figure and answer over the plane; returns the best places."""
+    columns = run.map(partial(measurements_at, of, plan, excesses), frequencies, "frequencies")
+    found = [one for column in columns for one in column]
+    chosen = best(found)
+    caption = f"Standard errors of {', '.join(plan.names)} by one orbit."
+    run.table("measurements", found, caption, of=Measurement, show=())
+    run.table("next", chosen, f"The five best places. {caption}", of=Measurement, show=BEST)
+    if found:
+        run.figure("next", draw_plane(found, plan), PLANE)
+    if run.letters:
+        letters = letter_rows(of, plan)
+        run.table("letter_orbits", letters, "The same by the letter's orbits.", of=LetterOrbits)
+        if plan.names == Plan().names:
+            run.answer("period", answer(found, letters, plan))
+    return chosen
+
+
+def edges(centres: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Borders of cells around rising `centres`, halfway between them."""
+    half = 0.5 * np.diff(centres) if centres.size > 1 else np.full(1, 0.5)
+    return np.concatenate([centres[:1] - half[:1], centres[:-1] + half, centres[-1:] + half[-1:]])
+
+
+@plotting.in_house_style
+def draw_plane(found: Sequence[Measurement], plan: Plan) -> Figure:
+    """The error of each wanted parameter over frequency and excess."""
+    places = [(round(one.frequency_hz, 6), round(one.excess, 9)) for one in found]
+    across, up = (sorted({place[i] for place in places}) for i in (0, 1))
+    figure, axes = plotting.new_figure(
+        1, len(plan.names), width=plotting.PAGE, height=0.082, sharey=True, squeeze=False
+    )
+    cells = edges(np.array(across)), STABLE * np.sinh(edges(np.arcsinh(np.array(up) / STABLE)))
+    shown = dict(sorted(zip(places, found, strict=True), key=lambda pair: (pair[1].kept, -pair[1].together)))
+    for k, (axis, name) in enumerate(zip(axes.flat, plan.names, strict=True)):
+        words, scale = ERRORS.get(name, (f"error of {name} (SI units)", 1.0))
+        seen, lost = np.full((2, len(up), len(across)), np.nan)
+        for (f, excess), one in shown.items():
+            (seen if one.kept else lost)[up.index(excess), across.index(f)] = one.errors[k] * scale
+        axis.pcolormesh(*cells, 0.0 * lost, cmap="Greys", vmin=-1.0, vmax=3.0)
+        if np.isfinite(seen).any():
+            mesh = axis.pcolormesh(*cells, seen, cmap="viridis_r", norm=LogNorm())
+            bar = figure.colorbar(mesh, ax=axis, location="top", label=words)
+            bar.ax.xaxis.set_minor_formatter("")
+        axis.plot(list(letter.PERIODS), [1e-3] * 6, **plotting.LETTER_POINTS)
+        for number, one in enumerate(best(found), 1):
+            axis.annotate(
+                str(number),
+                (one.frequency_hz, one.excess),
+                ha="center",
+                va="center",
+                fontsize=plotting.NOTE,
+                bbox={"boxstyle": "circle,pad=0.15", "fc": "white", "lw": 0.5},
+            )
+        axis.set_yscale("symlog", linthresh=STABLE)
+        plotting.label(axis.xaxis, "drive frequency", "Hz")
+    plotting.label(axes[0, 0].yaxis, plotting.EXCESS)
+    return figure
