@@ -135,7 +135,7 @@ def _walked(found: Fit) -> tuple[dict[str, tuple[float, float]], Point | None]:
     """Intervals by profiles where chi^2 is no parabola, and a point that is better than the fit, if there is
     one."""
     walks = dict[str, tuple[float, float]]()
-    for name in [] if found.too_small else found.problem.names:
+    for name in found.problem.names if found.settled and not found.too_small else ():
         walk = found.walk(name)
         if walk.bent(found.reach):
             sides = [walk.side(way * found.reach) for way in (-1.0, 1.0)]

@@ -48,8 +48,9 @@ class Fit:
 
     `noise`: standard deviation of x [m], or of an excess in units of its error; `freedom`: rows less
     unknowns; `residuals`: observed less predicted, shape of the record's `observed`; `chance`: probability of
-    residuals of such size or pattern from noise alone; `problem` and `unknowns`: what was solved; `walks`:
-    the intervals of the parameters along which chi^2 is no parabola, by its profile.
+    residuals of such size or pattern from noise alone; `left`: fall of chi^2 by a further step, in the noise's
+    variance; `problem` and `unknowns`: what was solved; `walks`: the intervals of the parameters along which
+    chi^2 is no parabola, by its profile.
     """
 
     record: Record
@@ -64,6 +65,7 @@ class Fit:
     freedom: int
     residuals: Array
     chance: float
+    left: float
     problem: Problem
     unknowns: Array
     walks: Mapping[str, tuple[float, float]] = field(default_factory=dict)
@@ -93,6 +95,11 @@ class Fit:
     def too_small(self) -> bool:
         """Whether the residuals are unlike noise: the model is too small for the record."""
         return self.chance < TOO_SMALL
+
+    @property
+    def settled(self) -> bool:
+        """Whether no further step would lower chi^2 by more than a part of the noise's variance."""
+        return self.left <= SETTLED
 
     @property
     def reach(self) -> float:
@@ -134,9 +141,6 @@ def judged(problem: Problem, found: Found, oscillator: ImpactOscillator, known: 
     if lost and chance > TOO_SMALL:
         blind = _blind((axes / sizes)[:, own], names)
         raise NoAnswer(f"the record cannot {blind}: fit fewer parameters or another record")
-    gain = found.left / spread**2
-    if gain > SETTLED and chance > TOO_SMALL:  # else the model is too small
-        raise NoAnswer(f"the fit has not settled after {MOST} steps: chi^2 would still fall by {gain:.2g}")
     covariance = (axes.T / np.maximum(singular, SEEN * singular[0]) ** 2 @ axes * spread**2)[np.ix_(own, own)]
     before = parameters_of(oscillator)
     return Fit(
@@ -152,13 +156,14 @@ def judged(problem: Problem, found: Found, oscillator: ImpactOscillator, known: 
         freedom=problem.freedom,
         residuals=(-found.fun[:rows] / problem.weights).reshape(prediction.record.observed.shape),
         chance=chance,
+        left=found.left / spread**2,
         problem=problem,
         unknowns=found.x,
     )
 
 
 def determined(found: Fit) -> Fit:
-    """The fit; NoAnswer if the error of a parameter is above its value."""
+    """The fit; NoAnswer if the error of a parameter is above its value, or if it has not settled."""
     sizes = np.array([SIZES.get(name, 0.0) for name in found.names])
     sizes = np.maximum(np.abs(found.estimate), sizes) * np.where(
         found.problem.log[found.problem.named], LOST, 1.0
@@ -169,6 +174,9 @@ def determined(found: Fit) -> Fit:
         worst, blind = found.names[int(np.argmax(share))], _blind(axes, found.names)
         blind = blind if worst in blind.split() else f"determine {worst}"
         raise NoAnswer(f"the record cannot {blind}: the standard error of {worst} is above its value")
+    if not found.settled and not found.too_small:
+        fall = f"chi^2 would still fall by {found.left:.2g}"
+        raise NoAnswer(f"the fit has not settled after {MOST} steps: {fall}")
     return found
 
 

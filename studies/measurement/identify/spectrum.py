@@ -1,4 +1,4 @@
-"""Lines of a record: harmonics of an orbit, possible drive frequencies, and after how many periods it repeats."""
+"""Lines of a record: harmonics of an orbit, possible drive frequencies, and its repetition."""
 
 from __future__ import annotations
 
