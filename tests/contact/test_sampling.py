@@ -169,7 +169,8 @@ def fail(kind: type[ContactError]) -> None:
 
 
 def test_errors_leave_a_worker_as_themselves():
-    kinds = [ContactError, *ContactError.__subclasses__()]
+    own = (kind for kind in ContactError.__subclasses__() if kind.__module__.startswith("contact."))
+    kinds = [ContactError, *own]
     assert len(kinds) > 7
     with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
         for kind in kinds:

@@ -48,9 +48,9 @@ class Fit:
 
     `noise`: standard deviation of x [m], or of an excess in units of its error; `freedom`: rows less
     unknowns; `residuals`: observed less predicted, shape of the record's `observed`; `chance`: probability of
-    residuals of such size or pattern from noise alone; `left`: fall of chi^2 by a further step, in
-    units of the noise's variance; `problem` and `unknowns`: what was solved; `walks`: the intervals of the parameters along which
-    chi^2 is no parabola, by its profile.
+    residuals of such size or pattern from noise alone; `left`: fall of chi^2 by a further step, in units of
+    the noise's variance; `problem` and `unknowns`: what was solved; `walks`: the intervals of the parameters
+    along which chi^2 is no parabola, by its profile.
     """
 
     record: Record
