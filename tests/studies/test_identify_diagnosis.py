@@ -133,7 +133,11 @@ def test_a_sentence_names_the_unit_or_the_factor(lab):
     assert unit_of(10.1, 0.0100, "gap") == "the record looks like millimetres: divide by 1000"
     assert unit_of(0.0022, 2.2, "amplitude") == "the given amplitude looks like millimetres: divide by 1000"
     assert unit_of(40.8, 0.0408, "free_period") == "the record looks like milliseconds: divide by 1000"
-    assert unit_of(0.010, 0.0119, "gap") is None
+    assert (
+        unit_of(0.0022, 0.021582, "amplitude") == "the given amplitude looks like units of g: divide by 9.81"
+    )
+    assert "2 pi" in str(unit_of(22.2, 139.5, "frequency"))
+    assert unit_of(0.010, 0.0119, "gap") is None and unit_of(0.0022, 0.022, "amplitude") is None
 
 
 F, ALL = 22.2, ("free_period", "decay_rate", "gap", "amplitude", "restitution", "frequency")

@@ -72,11 +72,11 @@ class Fit:
 
     @property
     def errors(self) -> Array:
-        """Standard errors; of a parameter with a profile those of the sides of its interval that end."""
+        """Standard errors; of a parameter with a profile that of the nearer end of its interval."""
         found = np.sqrt(np.diag(self.covariance))
         for i, ends in ((self.names.index(name), ends) for name, ends in self.walks.items()):
             sides = [abs(end - self.estimate[i]) for end in ends if math.isfinite(end)]
-            found[i] = np.mean(sides) / self.reach
+            found[i] = min(sides) / self.reach
         return np.asarray(found)
 
     @property

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import replace
 
@@ -19,6 +20,10 @@ MOST, DENSE = 20_000, 40
 OFF, APART, BEYOND = 0.01, 100.0, 10.0
 """Part by which the given drive frequency may be off. Ratio of an amplitude to that of grazing which may be
 one of units; of the largest strobe point to the gap."""
+
+
+RATIOS = ((1e3, 0.15), (1e6, 0.15), (9.81, 0.01), (2.0 * math.pi, 0.01))
+"""Ratios of units, and by which part another may differ and still be one: 10 is none."""
 
 
 def sound(record: Record, oscillator: ImpactOscillator) -> tuple[Record, ImpactOscillator]:
@@ -46,15 +51,21 @@ def sound(record: Record, oscillator: ImpactOscillator) -> tuple[Record, ImpactO
 def unit_of(found: float, given: float, what: str) -> str | None:
     """Words for the unit in which the record or the given value of `what` would agree with the other one."""
     base = "seconds" if "period" in what else "metres"
-    for factor, unit, number in ((1e3, f"milli{base}", "1000"), (1e6, f"micro{base}", "1e6")):
+    names = {
+        "1000": f"milli{base}",
+        "1e6": f"micro{base}",
+        "9.81": "units of g",
+        "2 pi": "an angular frequency",
+    }
+    for (number, unit), (factor, part) in zip(names.items(), RATIOS, strict=True):
         for one, other, thing in ((given, found, f"the given {what}"), (found, given, "the record")):
-            if abs(one - factor * other) < 0.15 * factor * other:
+            if abs(one - factor * other) < part * factor * other:
                 return f"{thing} looks like {unit}: divide by {number}"
     return None
 
 
 def require_units(record: Record, oscillator: ImpactOscillator, found: Mapping[str, float]) -> None:
-    """InvalidValue if a thousand or a million is between given values and the ones `found` in the record."""
+    """InvalidValue if the ratio of two units is between given values and the ones `found` in the record."""
     for name in ("amplitude" if record.amplitude else "gap", "free_period"):
         known = parameters_of(oscillator)[name]
         if name in found and (words := unit_of(found[name], known.value, name)):
