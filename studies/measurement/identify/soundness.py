@@ -22,8 +22,8 @@ OFF, APART, BEYOND = 0.01, 100.0, 10.0
 one of units; of the largest strobe point to the gap."""
 
 
-RATIOS = ((1e3, 0.15), (1e6, 0.15), (9.81, 0.01), (2.0 * math.pi, 0.01))
-"""Ratios of units, and by which part another may differ and still be one: 10 is none."""
+RATIOS = ((1e3, 3.0), (1e6, 3.0), (9.81, 1.01), (2.0 * math.pi, 1.01))
+"""Ratios of units, and by which factor another may differ and still be one: 10 is none."""
 
 
 def sound(record: Record, oscillator: ImpactOscillator) -> tuple[Record, ImpactOscillator]:
@@ -57,9 +57,9 @@ def unit_of(found: float, given: float, what: str) -> str | None:
         "9.81": "units of g",
         "2 pi": "an angular frequency",
     }
-    for (number, unit), (factor, part) in zip(names.items(), RATIOS, strict=True):
+    for (number, unit), (factor, near) in zip(names.items(), RATIOS, strict=True):
         for one, other, thing in ((given, found, f"the given {what}"), (found, given, "the record")):
-            if abs(one - factor * other) < part * factor * other:
+            if 1.0 / near < one / (factor * other) < near:
                 return f"{thing} looks like {unit}: divide by {number}"
     return None
 
