@@ -229,12 +229,10 @@ def test_a_gap_that_no_scene_has_is_refused_before_any_table(run_study, tmp_path
     record = synthetic("displacement", made["one_mode"], seed=2, periods=10)
     big = replace(record, rows=record.rows * [1.0, 1e6], amplitude=None)
     (tmp_path / "a.csv").write_text(big.text())
-    for more, said in (
-        ((), "micrometres: divide by 1e6"),
-        (("--set", "stop.gap_m=0.009"), r"stop\.gap_m must be"),
-    ):
+    for more in ((), ("--set", "stop.gap_m=0.009")):
         ran = run_study("identify", str(tmp_path / "a.csv"), "--fit", "gap", "tau", "amplitude", *more)
-        assert ran.code == 2 and re.fullmatch(f".*{said}.*\n", ran.err) and not ran.folder.exists(), ran.err
+        assert ran.code == 2 and not ran.folder.exists(), ran.err
+        assert re.fullmatch(".*micrometres: divide by 1e6.*\n", ran.err), ran.err
 
 
 WRONG = {

@@ -27,6 +27,9 @@ Array = NDArray[np.float64]
 NAMES, RESPONSE = ("free_period", "decay_rate", "amplitude", "frequency"), 3
 """Parameters that such a motion hangs on; how many of the first do so by the response alone."""
 
+LOGS = -3.0, 3.0
+"""Logarithms by which f, T and c may leave where a search begins."""
+
 FREE, DECAYS, AWAY = np.geomspace(0.5, 2.0, 40), (0.03, 0.1, 0.3), 1e3
 """Free periods and decay rates that a search begins with, by the drive period; gap by the largest reading."""
 
@@ -45,7 +48,7 @@ class Linear:
         begun = min(grid, key=lambda one: float(np.sum(self.left(*one)[1] ** 2)))
 
         def off(logs: Array) -> Array:
-            return self.left(*begun * np.exp(logs))[1]
+            return self.left(*begun * np.exp(np.clip(logs, *LOGS)))[1]
 
         best = begun * np.exp(least_squares(off, np.zeros(3), x_scale="jac", max_nfev=60).x)
         self.frequency, self.free_period, self.decay_rate = best.tolist()

@@ -32,6 +32,9 @@ LEVEL = 0.90
 TOO_SMALL = 1e-3
 """Probability of such residuals from noise alone, below which the model is called too small."""
 
+OPEN = ("stiffness",)
+"""What may have no end: a record may only show that a stop is harder, or softer, than a bound."""
+
 SIZES = {"restitution": 0.5, "phase": 1.0, "offset": math.inf}
 """Least size of a number that an error is compared with: some may be zero."""
 
@@ -72,11 +75,15 @@ class Fit:
 
     @property
     def errors(self) -> Array:
-        """Standard errors; of a parameter with a profile that of the nearer end of its interval."""
+        """Standard errors; of a parameter with a profile those that would give its interval."""
         found = np.sqrt(np.diag(self.covariance))
-        for i, ends in ((self.names.index(name), ends) for name, ends in self.walks.items()):
-            sides = [abs(end - self.estimate[i]) for end in ends if math.isfinite(end)]
-            found[i] = min(sides) / self.reach
+        for name, ends in self.walks.items():
+            i = self.names.index(name)
+            lasting = [math.isfinite(end) and not (end == 0.0 and self.problem.log[i]) for end in ends]
+            sides = [abs(end - self.estimate[i]) for end, lasts in zip(ends, lasting, strict=True) if lasts]
+            found[i] = np.mean(sides) / self.reach if all(lasting) else math.inf
+            if name in OPEN and sides:
+                found[i] = min(sides) / self.reach
         return np.asarray(found)
 
     @property
