@@ -34,6 +34,9 @@ RANGES = {"decay_rate": (0.0, math.inf), "restitution": (0.0, 1.0)}
 LAGS = 10
 """Number of lags in the autocorrelation of residuals."""
 
+TINY = 1e-300
+"""Least ratio of a value to where it starts: a step along a tangent may round to zero."""
+
 RESPONSE, STEP = ("free_period", "decay_rate", "frequency"), 1e-6
 """The parameters that the response of the tip hangs on; a part of each, for differences of it."""
 
@@ -112,7 +115,7 @@ class Problem:
             found[self.steady[0]] *= abs(response)
             found[self.steady[1]] += np.angle(response)
         found = found / self.sizes
-        found[self.log] = np.log(found[self.log])
+        found[self.log] = np.log(np.maximum(found[self.log], TINY))
         return np.asarray(found)
 
     def slopes(self, unknowns: Array) -> Array:
