@@ -45,6 +45,9 @@ by row at which the fit of more and more rows is given up."""
 SHORT = 20.0
 """Drive periods of a motion that are fitted where more are not: chaos forgets its start."""
 
+LOST = 30.0
+"""Error of a parameter over its value at which the record does not depend on it: no profile shows more."""
+
 AGAIN, BETTER = 4, 0.2
 """How often a fit begins again at a better point of a profile, and by how much chi^2 is less there."""
 
@@ -135,7 +138,9 @@ def _walked(found: Fit) -> tuple[dict[str, tuple[float, float]], Point | None]:
     """Intervals by profiles where chi^2 is no parabola, and a point that is better than the fit, if there is
     one."""
     walks = dict[str, tuple[float, float]]()
-    for name in found.problem.names if found.settled and not found.too_small else ():
+    for i, name in enumerate(found.problem.names if found.settled and not found.too_small else ()):
+        if not found.errors[i] < LOST * abs(found.estimate[i]):
+            continue
         walk = found.walk(name)
         if walk.bent(found.reach):
             sides = [walk.side(way * found.reach) for way in (-1.0, 1.0)]

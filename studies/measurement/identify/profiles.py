@@ -28,6 +28,9 @@ REFITS, FEW, NEAR = 16, 30, 0.15
 GROW, SHRINK, WILD = 4.0, 0.3, 1e4
 """Longest step over the last one; what follows a step that fails; rise of chi^2 where no refit begins."""
 
+FARTHEST = 50.0
+"""Logarithm by which a step along a tangent moves a value at most."""
+
 FAR = 0.25
 """Part of the reach from which on a walk that comes to a halt is continued by a line."""
 
@@ -102,7 +105,9 @@ class Walk:
             back = last.away - point.away
             found += (last.values - point.values - back * point.along) * (step / back) ** 2
             found[self.i] = point.values[self.i] + step * point.along[self.i]
-        found[log] = point.values[log] * np.exp(found[log] / point.values[log] - 1.0)
+        found[log] = point.values[log] * np.exp(
+            np.clip(found[log] / point.values[log] - 1.0, -FARTHEST, FARTHEST)
+        )
         others = np.arange(found.size) != self.i
         low, high = self.problem.bounds * self.problem.sizes
         found[others] = np.clip(found, low, high)[others]

@@ -178,7 +178,8 @@ def determined(found: Fit) -> Fit:
     share = found.errors / sizes
     if not found.too_small and not np.all(share <= 1.0):  # else the residuals say so
         axes = np.linalg.eigh(found.covariance / np.outer(sizes, sizes))[1].T
-        worst, blind = found.names[int(np.argmax(share))], _blind(axes, found.names)
+        by_slopes = np.where(share <= 1.0, 0.0, np.sqrt(np.diag(found.covariance)) / sizes)
+        worst, blind = found.names[int(np.argmax(by_slopes))], _blind(axes, found.names)
         blind = blind if worst in blind.split() else f"determine {worst}"
         raise NoAnswer(f"the record cannot {blind}: the standard error of {worst} is above its value")
     if not found.settled and not found.too_small:
