@@ -44,11 +44,11 @@ RESPONSE, STEP = ("free_period", "decay_rate", "frequency"), 1e-6
 class Problem:
     """Residuals and Jacobian in units of the noise, by unknowns u without units.
 
-    A parameter p that starts at p_0 > 0 has u = log(p/p_0), another one, and those of `RANGES`, u = p/size:
-    no search leaves the physical range.  Where amplitude Z and phase of the drive are both fitted, theirs
-    are those of the steady motion Y = Z exp(i phase) R of the tip, R its response to the base: near a
-    resonance the record determines Y, and hardly Z.  The further unknowns are held by their prior, the
-    parameters by a `leash`: a standard deviation of u about where it starts.
+    A parameter p that starts at p_0 > 0 has u = log(p/p_0).  Others, and those in `RANGES`, have u = p/size.
+    No search leaves the physical range.  Where amplitude Z and phase of the drive are both fitted, the steady
+    motion Y = Z exp(i phase) R of the tip is fitted instead.  R is its response to the base: near a resonance
+    the record determines Y, and hardly Z.  A prior holds the further unknowns.  A `leash` holds the
+    parameters: a standard deviation of u about where it starts.
     """
 
     def __init__(

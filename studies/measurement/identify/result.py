@@ -2,7 +2,7 @@
 
     covariance  s^2 (J^T J)^-1,   s^2 = 1 where the noise is known, else chi^2/(n - number of unknowns).
 
-90 % intervals are those of Student's t about the unknowns of the fit, or of a profile of the likelihood.
+90 % intervals follow from Student's t for the unknowns of the fit, or from a profile of the likelihood.
 """
 
 from __future__ import annotations
@@ -117,7 +117,7 @@ class Fit:
     def intervals(self) -> Array:
         """Lower and upper ends, shape (n, 2), within the physical range.
 
-        They are those of the unknowns of the problem, of a restitution r those of log(r/(1 - r)).
+        They follow from intervals of the unknowns; for a restitution r from an interval of log(r/(1 - r)).
         """
         log = self.problem.log[self.problem.named]
         wide = self.reach * np.sqrt(np.diag(self.covariance))

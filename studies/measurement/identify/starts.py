@@ -55,7 +55,7 @@ FACTORS = (0.1, 10.0, 0.3, 3.0, 0.03, 30.0)
 """Values of what a kick does not tell of a contact, over the given one."""
 
 RESTITUTIONS = (0.1, 0.3, 0.6, 0.9)
-"""Restitutions that are tried beside those of the record and the scene."""
+"""Restitutions that are tried beside the ones of the record and the scene."""
 
 LOOKED = 200
 """Times of an orbit at which the tip may be farthest from the stop, where its state begins."""
