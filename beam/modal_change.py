@@ -5,14 +5,21 @@ Measured parameters: the damped free period T and the decay rate c_1 are read of
     omega_1^2 = (2 pi/T)^2 + (c_1/2)^2.
 
 The ratios omega_k/omega_1 are kept, as under a change of Young's modulus.
+
+A mass m added at the tip mixes the modes.  With q = V r,
+
+    diag(omega^2) V = (1 + m phi phi^T) V diag(omega'^2),   V^T (1 + m phi phi^T) V = 1,
+
+and phi' = V^T phi, Gamma' = V^T (Gamma + m phi).  T and the decay rates are kept: all omega' are scaled.
 """
 
 from __future__ import annotations
 
 import numpy as np
+from scipy.linalg import eigh
 
-from .modal_model import ModalChange, ModalModel
-from .parameters import Array, require_kind, require_whole
+from .modal_model import UNITS, ModalChange, ModalModel
+from .parameters import Array, require, require_kind, require_whole, require_within
 
 
 def free_period_change(model: ModalModel) -> ModalChange:
@@ -38,6 +45,60 @@ def decay_rate_change(model: ModalModel, mode: int | None = 0) -> ModalChange:
     else:
         change = np.eye(model.n_modes)[require_whole("mode", mode, "[1]", low=0, high=model.n_modes - 1)]
     return _with_fixed_shapes(0.25 * rates[k] * change[k] * omega / omega[k] ** 2, change)
+
+
+def tip_mass_change(model: ModalModel) -> ModalChange:
+    """Return the derivative of `model` with respect to the mass at its tip, per kg.
+
+    The free period T and the decay rates are fixed. Frequencies must differ.
+    """
+    omega, rates, lead = _frequencies(model)
+    phi, gamma, square = model.phi, model.participation, omega**2
+    apart = square[:, None] - square + np.diag(square)
+    require(bool(np.all(apart[:, phi != 0.0])), f"omega is {omega} rad/s; no two frequencies may be equal")
+    mixed = np.outer(phi, square * phi) / np.where(apart, apart, 1.0)  # of e_j in mode k, to first order
+    np.fill_diagonal(mixed, -0.5 * phi**2)
+    change = -0.5 * phi**2 * omega
+    return ModalChange(
+        omega=change - omega * (change[lead] / omega[lead]),
+        decay_rate=0.0 * rates,
+        phi=phi @ mixed,
+        participation=phi + gamma @ mixed,
+    )
+
+
+def with_tip_mass(model: ModalModel, mass: float) -> ModalModel:
+    """Return `model` with another mass at its tip [kg], above zero; its modes span the motion.
+
+    The free period T, the decay rates and the signs of `phi` are kept. The read-outs follow the modes.
+
+    Raises
+    ------
+    ValueError
+        If the model has no tip mass, or the modes cannot do with so much less of it.
+    """
+    omega, _rates, lead = _frequencies(model)
+    require(bool(model.tip_mass), f"tip_mass is {model.tip_mass} kg; the model must have one, above zero")
+    added = require_within("mass", mass, "kg", above=0) - float(model.tip_mass or 0.0)
+    inertia = np.eye(model.n_modes) + added * np.outer(model.phi, model.phi)
+    found, shapes = eigh(np.diag(omega**2), inertia)
+    place = np.argsort(np.argsort(omega))  # one more mass moves no frequency beyond the next
+    shapes, paces = shapes[:, place], np.sqrt(np.maximum(found[place], 0.0))
+    shapes = shapes * np.where(model.phi * (model.phi @ shapes) < 0.0, -1.0, 1.0)
+    scale = omega[lead] / paces[lead]
+    compliance = model.static_compliance
+    rows = (
+        paces * scale,
+        model.decay_rate,
+        model.phi @ shapes,
+        (model.participation + added * model.phi) @ shapes,
+    )
+    return ModalModel(
+        **dict(zip(UNITS, rows, strict=True)),
+        static_compliance=None if compliance is None else float(compliance) / scale**2,
+        tip_mass=float(mass),
+        readouts={name: row @ shapes for name, row in model.readouts.items()},
+    )
 
 
 def _frequencies(model: ModalModel) -> tuple[Array, Array, int]:

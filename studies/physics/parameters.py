@@ -2,6 +2,7 @@
 
 free_period T, decay_rate c     of mode 1: omega_1^2 = (2 pi/T)^2 + (c/2)^2; the other frequencies keep
                                 their ratio to omega_1, the other decay rates theirs to c
+tip_mass                        at the tip, of a model with more than one mode; T and the decay rates are kept
 gap                             of the stop
 restitution, delay, stiffness, damping, dissipation     the plain numbers of the contact law
 frequency, amplitude            of the base motion; with one mode Z is that of Eq. (1), Gamma phi Z of a
@@ -17,7 +18,14 @@ from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from typing import Any, Literal
 
-from beam import InvalidValue, SuspiciousValue, decay_rate_change, free_period_change
+from beam import (
+    InvalidValue,
+    SuspiciousValue,
+    decay_rate_change,
+    free_period_change,
+    tip_mass_change,
+    with_tip_mass,
+)
 from contact import (
     ContactLaw,
     DelayedRestitution,
@@ -60,9 +68,11 @@ def numbers_of(law: ContactLaw) -> dict[str, tuple[str, str]]:
 def parameters_of(oscillator: ImpactOscillator) -> dict[str, Parameter]:
     """The parameters that this oscillator has, by name."""
     law, drive, period = oscillator.stop.law, oscillator.driven, oscillator.period
+    mass = oscillator.model.tip_mass
     known = {
         "free_period": (oscillator.model.free_period, "s"),
         "decay_rate": (float(oscillator.model.decay_rate[oscillator.model.leading_mode]), "1/s"),
+        **({"tip_mass": (float(mass), "kg")} if mass and oscillator.n_modes > 1 else {}),
         "gap": (oscillator.stop.gap, "m"),
         "frequency": (drive.frequency, "Hz"),
         "amplitude": (drive.amplitude, "m"),
@@ -81,6 +91,7 @@ def changes_of(oscillator: ImpactOscillator, names: Sequence[str]) -> list[Chang
     found: dict[str, Change] = {
         "free_period": Change(model=free_period_change(model)) if "free_period" in names else Change(),
         "decay_rate": Change(model=decay_rate_change(model, None)) if "decay_rate" in names else Change(),
+        "tip_mass": Change(model=tip_mass_change(model)) if "tip_mass" in names else Change(),
         "gap": Change(gap=1.0),
         "frequency": Change(frequency=1.0),
         "amplitude": Change(amplitude=1.0),
@@ -121,6 +132,8 @@ def with_values(oscillator: ImpactOscillator, values: Mapping[str, float]) -> Im
 
 def _with_values(oscillator: ImpactOscillator, values: Mapping[str, float]) -> ImpactOscillator:
     model, stop, drive, law = oscillator.model, oscillator.stop, oscillator.driven, oscillator.stop.law
+    if "tip_mass" in values:
+        model = with_tip_mass(model, values["tip_mass"])
     if "free_period" in values or "decay_rate" in values:
         k = model.leading_mode
         before = float(model.decay_rate[k])

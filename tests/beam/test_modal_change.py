@@ -62,6 +62,42 @@ def test_a_change_moves_its_own_parameter_and_keeps_the_others(change, moved):
         assert np.abs((found[name] - expected) / at[name]).max() < 1e-11 * size, name
 
 
+def of_mass(mass: float, count: int = 20) -> beam.ModalModel:
+    """The letter's spring, roughly, with a ball of this mass [kg]."""
+    strip = beam.StripSection(material=beam.BRASS, width=12e-3, thickness=0.65e-3)
+    spring = beam.folded_u(leg_length=0.13, bend_radius=7.5e-3, section=strip, tip=beam.Tip(mass=mass))
+    modes = beam.natural_modes(beam.assemble(spring), count=count)
+    return beam.reduce(modes, beam.MeasuredDecay(decay_rate=3.56))
+
+
+def test_another_mass_at_the_tip_is_the_finite_element_model_with_that_mass():
+    """All frequencies in proportion, since the free period is kept; with all that the modes left out the mass
+    of an instant impact is exact."""
+    other, found = of_mass(3e-3), beam.with_tip_mass(of_mass(4e-3), 3e-3)
+    assert found.free_period == pytest.approx(of_mass(4e-3).free_period, rel=1e-12)
+    assert found.omega[:4] / found.omega[0] == pytest.approx(other.omega[:4] / other.omega[0], rel=2e-6)
+    for name in ("phi", "participation"):
+        assert getattr(found, name)[:4] == pytest.approx(getattr(other, name)[:4], rel=2e-4)
+    pace = found.omega[0] / other.omega[0]
+    assert found.static_compliance == pytest.approx(other.static_compliance / pace**2, rel=1e-6)
+    whole = beam.with_tip_mass(of_mass(4e-3, 10).with_residual_mode(), 3e-3)
+    assert np.sum(whole.phi**2) == pytest.approx(1.0 / 3e-3, rel=1e-12)
+
+
+def test_the_change_with_the_tip_mass_is_that_of_differences():
+    model, keys = of_mass(4e-3, 10), ARRAYS
+
+    def of(mass: float) -> Numbers:
+        at = beam.with_tip_mass(model, mass)
+        return {name: getattr(at, name) for name in keys}
+
+    found, exact = differences(of, 4e-3, 1e-5), beam.tip_mass_change(model)
+    for name in keys:
+        assert getattr(exact, name) == pytest.approx(found[name], rel=1e-8, abs=1e-9 * np.ptp(found[name])), (
+            name
+        )
+
+
 def test_without_damping_all_modes_get_the_same() -> None:
     """There is no proportion to keep; the frequencies do not move to first order."""
     change = beam.decay_rate_change(replace(THREE, decay_rate=np.zeros(3)), None)

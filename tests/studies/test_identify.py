@@ -41,6 +41,7 @@ def far_from(oscillator):
     """A start that a user might have: a quarter of a per cent off in T, some in the gap, half in the rest."""
     known = parameters_of(oscillator)
     factors = {"free_period": 0.9975, "gap": 0.97, "decay_rate": 0.85, "restitution": 1.5, "delay": 0.5}
+    factors["tip_mass"] = 1.05
     return with_values(oscillator, {n: known[n].value * f for n, f in factors.items() if n in known})
 
 
@@ -55,8 +56,8 @@ CASES = [
     ("one_mode", "displacement", False, (*NAMES, "frequency")),
     ("waiting", "strobe", True, ("free_period", "decay_rate", "restitution", "delay")),
     ("waiting", "displacement", False, (*NAMES, "delay", "amplitude")),
-    ("beam", "strobe", False, ("free_period", "gap")),
-    ("beam", "displacement", False, ("free_period", "decay_rate", "gap", "stiffness")),
+    ("beam", "strobe", False, ("tip_mass", "gap")),
+    ("beam", "displacement", False, ("free_period", "decay_rate", "gap", "stiffness", "tip_mass")),
     ("one_mode", "transitions", False, ("free_period", "restitution")),
 ]
 

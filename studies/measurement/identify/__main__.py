@@ -29,6 +29,7 @@ synthetic ones, with 0.5 um of read-out noise, are made and fitted.
     stiffness           N/m^1.5      of Hertz's contact; N/m of a linear one (beam)
     damping             N s/m        of a linear contact (beam)
     dissipation         s/m          of Hunt and Crossley's contact (beam)
+    tip_mass            kg           mass at the tip; the free period is a number of its own (beam)
     phase               rad          phase of the base at time zero; it and the next two need a displacement
     offset              m            reading of the sensor at equilibrium
     scale               1            reading per displacement

@@ -36,7 +36,7 @@ from numpy.typing import NDArray
 from beam import InvalidValue
 from contact import ImpactKind, ImpactOscillator, State, Trajectory, simulate
 from contact.orbits import motion_derivatives
-from studies.measurement.identify.predictions import Prediction
+from studies.measurement.identify.predictions import Prediction, shapes_changed
 from studies.measurement.identify.records import NoAnswer, Record
 from studies.physics.parameters import changes_of, parameters_of
 
@@ -209,7 +209,8 @@ class Displacement(Prediction):
         changes, periods = changes_of(oscillator, names), _periods(end, oscillator)
         found = motion_derivatives(oscillator, state, changes, periods=periods, times=times)
         tip = np.tensordot(found.states[:, :n], oscillator.model.phi, (1, 0))[place[:-1]]
-        tips, own = tip[:, : 2 * n], tip[:, 2 * n :]
+        own = tip[:, 2 * n :] + found.run.displacement[place[:-1]] @ shapes_changed(changes, n)
+        tips = tip[:, : 2 * n]
         run, scale = found.run, self.reading(extra)["scale"]
         x, later = (oscillator.tip(one)[place[:-1]] for one in (run.displacement, run.velocity))
         moved = [name == "frequency" for name in names]

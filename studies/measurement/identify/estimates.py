@@ -60,11 +60,14 @@ class Estimate:
     def _style(self) -> tuple[float, int, str]:
         """Scale of the unit, digits after the point and the unit."""
         size = max(abs(self.estimate), self.standard_error)
-        powers = (9, 6, 3, 0) if self.unit[0] == "N" else (0, -3, -6) if self.unit in ("s", "m") else (0,)
+        powers = (
+            (9, 6, 3, 0) if self.unit[0] == "N" else (0, -3, -6) if self.unit in ("s", "m", "kg") else (0,)
+        )
         power = next((power for power in powers if size >= 10.0**power), powers[-1])
         first = f"{self.standard_error / 10.0**power:.1e}".partition("e")[2]
         prefix = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "\u00b5"}[power]
-        return 10.0**power, 1 - int(first or 0), prefix + self.unit
+        unit = {"mkg": "g", "\u00b5kg": "mg"}.get(prefix + self.unit, prefix + self.unit)
+        return 10.0**power, 1 - int(first or 0), unit
 
     def _written(self, number: float) -> str:
         scale, digits, _ = self._style

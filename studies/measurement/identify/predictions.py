@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from beam import InvalidValue
 from contact import ImpactOscillator, MaximalFamily, NewtonRestitution, simulate
 from contact.orbits import (
+    Change,
     KickFamily,
     PeriodicOrbit,
     Shooting,
@@ -70,6 +71,12 @@ def family_of(oscillator: ImpactOscillator, period: int) -> MaximalFamily | Kick
     return (MaximalFamily if newton else KickFamily)(oscillator=oscillator, period=period)
 
 
+def shapes_changed(changes: Sequence[Change], count: int) -> Array:
+    """Derivatives of the tip values phi by each change, shape (count, changes)."""
+    still = np.zeros(count)
+    return np.array([still if one.model is None else one.model.phi for one in changes]).reshape(-1, count).T
+
+
 class Strobes(Prediction):
     """The m strobe points of p_m."""
 
@@ -107,10 +114,12 @@ class Strobes(Prediction):
     def jacobian(self, oscillator: ImpactOscillator, extra: Array, names: Sequence[str]) -> Array:
         """Derivatives of `values`."""
         points = self.values(oscillator, extra)
-        found = orbit_derivatives(self.orbit, changes_of(self.orbit.oscillator, names))
-        states = found.strobes_changed.reshape(self.period, 2, -1, len(names))
+        n, changes = oscillator.n_modes, changes_of(self.orbit.oscillator, names)
+        found = orbit_derivatives(self.orbit, changes)
+        states = found.strobes_changed.reshape(self.period, 2, n, len(names))
         tips = np.tensordot(states, oscillator.model.phi, (2, 0))
-        x = oscillator.tip(found.strobes[:, : oscillator.n_modes])
+        tips += found.strobes.reshape(self.period, 2, n) @ shapes_changed(changes, n)
+        x = oscillator.tip(found.strobes[:, :n])
         return self._in_order(tips[:, : points.shape[1]], x).reshape(points.size, -1)
 
 

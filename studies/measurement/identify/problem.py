@@ -37,7 +37,7 @@ LAGS = 10
 TINY = 1e-300
 """Least ratio of a value to where it starts: a step along a tangent may round to zero."""
 
-RESPONSE, STEP = ("free_period", "decay_rate", "frequency"), 1e-6
+RESPONSE, STEP = ("free_period", "decay_rate", "frequency", "tip_mass"), 1e-6
 """The parameters that the response of the tip hangs on; a part of each, for differences of it."""
 
 
