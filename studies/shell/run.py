@@ -205,10 +205,11 @@ class Run:
             self.path(path.name)
         self._captions[f"{name}.png"] = caption
 
-    def failed(self, where: str, error: object) -> None:
+    def failed(self, where: str, error: object, *, say: bool = True) -> None:
         """One failed cell: the study goes on, and ends with exit code 3."""
         self.failures.append(f"{where}: {' '.join(str(error).split()) or type(error).__name__}")
-        self.say(self.failures[-1])
+        if say:
+            self.say(self.failures[-1])
 
     def verdict(self, point: str, verdict: Verdict, *, found: str, note: str = "") -> None:
         """What was found of a point of the letter (`letter.POINTS`), if the spring is the letter's.

@@ -153,7 +153,7 @@ class Study:
                 return INTERRUPTED, "interrupted", {}
             if not isinstance(error, ContactError):
                 raise
-            run.failed(type(error).__name__, error)
+            run.failed(type(error).__name__, error, say=False)  # the last line tells it
             return FAILED_CELLS, "failed", {}
         if run.failures:
             return FAILED_CELLS, "finished with failed cells", results

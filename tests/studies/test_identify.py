@@ -197,7 +197,7 @@ def test_a_file_that_is_no_record_or_a_poor_one_is_refused_in_a_sentence(run_stu
     (tmp_path / "a.csv").write_text(text)
     ran = run_study("identify", str(tmp_path / "a.csv"))
     code = 3 if any(words in REFUSED[text] for words in ("all rows", "no impact", "at least 3")) else 2
-    assert ran.code == code and re.search(REFUSED[text], ran.err) and ran.err.count("\n") == code - 1, ran.err
+    assert ran.code == code and re.search(REFUSED[text], ran.err) and ran.err.count("\n") == 1, ran.err
 
 
 def test_an_example_that_cannot_be_fitted_is_a_failed_cell(run_study, monkeypatch):
@@ -272,7 +272,7 @@ def test_a_model_that_is_too_small_is_no_answer_and_leaves_no_table(run_study, t
     beam = beam_at(read_scene("letter", ["modes.count=4"]), 22.2).with_excess(1e-3)
     (tmp_path / "mine.csv").write_text(synthetic("displacement", beam, seed=7, periods=20).text())
     ran = run_study("identify", str(tmp_path / "mine.csv"))
-    assert ran.code == 3 and re.search(r"too small .* free_period 40\.\d+\(\d\d\) ms", ran.err)
+    assert ran.code == 3 and re.search(r"too small .* free_period 40\.\d+ ms", ran.err)
     assert sorted(path.name for path in ran.folder.iterdir()) == ["manifest.json", "summary.json"]
 
 

@@ -59,7 +59,7 @@ from beam import InvalidValue, Refusal
 from contact import ImpactOscillator
 from studies.measurement.identify.diagnosis import contradictions, wanders
 from studies.measurement.identify.displacement import SENSOR
-from studies.measurement.identify.estimates import estimates_of, report
+from studies.measurement.identify.estimates import report, without_errors
 from studies.measurement.identify.fit import fit as fitted
 from studies.measurement.identify.records import Kind, NoAnswer, Record, read_record, synthetic
 from studies.measurement.identify.result import Fit
@@ -225,8 +225,7 @@ def answered(one: Fit) -> Fit:
         why = wanders(times, values, residuals, frequency)
         why += contradictions(times, values, residuals, frequency, period)
     reason = "; ".join([*dict.fromkeys(why)][:2])
-    best = ", ".join(f"{row.parameter} {row.value}" for row in estimates_of("", one))
-    raise NoAnswer(f"{reason}; the best values found are {best}, with errors that mean little")
+    raise NoAnswer(f"{reason}; the best values found, of unknown error, are {without_errors(one)}")
 
 
 def as_scene(scene: Scene, found: Fit) -> Scene:

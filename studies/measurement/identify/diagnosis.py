@@ -23,7 +23,7 @@ Array = NDArray[np.float64]
 STRONG, NEAR, RESOLVED, UNRESOLVED = 0.3, 3e-3, 0.05, 0.3
 """Height of the drive's line over the strongest (settled motions: above 0.7). Part by which it may be off, or
 part of 1/span, by which other lines move one in a record of three orbits and in a shorter one."""
-STICKING, STRAY, SURE, ALIKE, MANY = 6.0, 12.0, 8.0, 0.025, 6000
+STICKING, STRAY, SURE, ALIKE, MANY, LIKE = 6.0, 12.0, 8.0, 0.025, 6000, 1.3
 """Rows at an extreme reading over rows at the next (turning point: 2.4, flat: 5.3). Standard deviations of an
 outlier (corners: 8), of an estimate that is no chance. Part that an orbit leaves (noise of 1 %: 0.016); rows
 that suffice to see it."""
@@ -57,6 +57,12 @@ def repetition(times: Array, values: Array, frequency: float) -> Array:
     """What orbits of 1, 2, ... drive periods leave of a record [m], up to 12, if it has two of them."""
     most = max(1, min(12, int((times[-1] - times[0]) * frequency / 2.0)))
     return np.array([orbit_of(times, values, frequency / m)[1] for m in range(1, most + 1)])
+
+
+def period_of(times: Array, values: Array, frequency: float) -> int:
+    """Drive periods after which a record nearly repeats, or the best that there is."""
+    left = repetition(times, values, frequency)
+    return int(np.argmax(left < LIKE * left.min())) + 1
 
 
 def drive_found(times: Array, values: Array, frequency: float) -> tuple[float, str] | None:
@@ -123,8 +129,9 @@ def defects(times: Array, values: Array, frequency: float | None) -> list[str]:
     return found + poor_rows(times, values, off_neighbours(times, values)[0], line)
 
 
-def added(times: Array, residuals: Array, pace: float) -> list[str]:
-    """A hum and a drift that last, the same in each third of a record, beside what repeats with the orbit."""
+def added(times: Array, residuals: Array, pace: float, part: float = 0.0) -> list[str]:
+    """A hum and a drift that last, the same in each third of a record, beside what repeats with the orbit; a
+    hum that has this `part` of the variance."""
     span, rows, found = float(times[-1] - times[0]), times.size, list[str]()
     t, thirds = (times - times.mean()) / span, np.array_split(np.arange(rows), 3)
     waves = np.exp(2j * math.pi * pace * np.outer(np.arange(1, 1 + min(29, count_of(times, pace))), times))
@@ -135,7 +142,7 @@ def added(times: Array, residuals: Array, pace: float) -> list[str]:
     tones = [2.0 * np.mean((rest * np.exp(-2j * math.pi * at * times))[third]) for third in thirds]
     tone, apart = np.mean(tones), abs(at - pace * max(1, round(at / pace))) * span
     lasts = apart > 1.0 and max(np.abs(tones - tone)) < 0.5 * abs(tone)
-    if lasts and abs(tone) * math.sqrt(rows / 2) > SURE * rest.std():
+    if lasts and abs(tone) / math.sqrt(2.0) > max(SURE / math.sqrt(rows), part) * rest.std():
         found = [f"a line at {at:.4g} Hz of {1e3 * abs(tone):.2g} mm that is no harmonic of the orbit: hum"]
     slopes = [np.polyfit(t[third], (rest + slope * t)[third], 1)[0] / slope for third in thirds]
     if abs(slope) * math.sqrt(rows / 12) > SURE * rest.std() and min(slopes) > 0.5:
@@ -185,9 +192,7 @@ def wanders(times: Array, values: Array, residuals: Array, frequency: float) -> 
 
 def contradictions(times: Array, values: Array, residuals: Array, frequency: float, period: int) -> list[str]:
     """What residuals show that are no noise; the drive is at `frequency` [Hz], a `period` 0 is unknown."""
-    if period == 0:
-        left = repetition(times, values, frequency)
-        period = int(np.argmax(left < 1.3 * left.min())) + 1
+    period = period or period_of(times, values, frequency)
     pace, bare = frequency / period, np.abs(residuals - medfilt(residuals, 5))
     off = 3.0 * off_neighbours(times, values)[0]
     stray = np.minimum(bare / (1.4826 * np.median(bare[bare > 0.0])), off)

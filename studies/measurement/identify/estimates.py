@@ -24,6 +24,14 @@ SHOWN = ("record", "parameter", "value", "interval", "began", "in_scene")
 """Columns of the estimates on the terminal."""
 
 
+def prefixed(size: float, unit: str) -> tuple[float, str]:
+    """Scale and unit that a person would choose for a number of this size."""
+    powers = (9, 6, 3, 0) if unit[0] == "N" else (0, -3, -6) if unit in ("s", "m", "kg") else (0,)
+    power = next((power for power in powers if size >= 10.0**power), powers[-1])
+    found = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "\u00b5"}[power] + unit
+    return 10.0**power, {"mkg": "g", "\u00b5kg": "mg"}.get(found, found)
+
+
 @dataclass(frozen=True)
 class Estimate:
     """One parameter of a fit, in SI units.
@@ -59,15 +67,9 @@ class Estimate:
     @property
     def _style(self) -> tuple[float, int, str]:
         """Scale of the unit, digits after the point and the unit."""
-        size = max(abs(self.estimate), self.standard_error)
-        powers = (
-            (9, 6, 3, 0) if self.unit[0] == "N" else (0, -3, -6) if self.unit in ("s", "m", "kg") else (0,)
-        )
-        power = next((power for power in powers if size >= 10.0**power), powers[-1])
-        first = f"{self.standard_error / 10.0**power:.1e}".partition("e")[2]
-        prefix = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "\u00b5"}[power]
-        unit = {"mkg": "g", "\u00b5kg": "mg"}.get(prefix + self.unit, prefix + self.unit)
-        return 10.0**power, 1 - int(first or 0), unit
+        scale, unit = prefixed(max(abs(self.estimate), self.standard_error), self.unit)
+        first = f"{self.standard_error / scale:.1e}".partition("e")[2]
+        return scale, 1 - int(first or 0), unit
 
     def _written(self, number: float) -> str:
         scale, digits, _ = self._style
@@ -99,12 +101,28 @@ class Quality:
     chance: float
 
 
+def units_of(found: Fit) -> list[str]:
+    """The units of a fit's numbers."""
+    units = {name: one.unit for name, one in parameters_of(found.oscillator).items()} | UNITS
+    return [units[name] for name in found.names]
+
+
+def without_errors(found: Fit) -> str:
+    """The best values of a fit whose errors mean little."""
+    words = list[str]()
+    for name, value, own in zip(found.names, found.estimate.tolist(), units_of(found), strict=True):
+        scale, unit = prefixed(abs(value), own)
+        words.append(f"{name} {value / scale:.5g} {unit}".removesuffix(" 1"))
+    return ", ".join(words)
+
+
 def estimates_of(name: str, found: Fit) -> list[Estimate]:
     """The rows of a fit."""
-    units = {name: one.unit for name, one in parameters_of(found.oscillator).items()} | UNITS
     columns = found.start, found.estimate, found.errors, *found.intervals().T, found.before
-    words, correlations = [units[one] for one in found.names], map(tuple, found.correlations.tolist())
-    rows = zip(found.names, words, *(column.tolist() for column in columns), correlations, strict=True)
+    correlations = map(tuple, found.correlations.tolist())
+    rows = zip(
+        found.names, units_of(found), *(column.tolist() for column in columns), correlations, strict=True
+    )
     return [Estimate(name, *row) for row in rows]
 
 

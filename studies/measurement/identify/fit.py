@@ -20,7 +20,7 @@ from beam import Refusal
 from contact import ContactError, ImpactOscillator
 from studies import letter
 from studies.measurement.identify.descent import Found
-from studies.measurement.identify.diagnosis import wanders
+from studies.measurement.identify.diagnosis import added, period_of, wanders
 from studies.measurement.identify.linear import Linear
 from studies.measurement.identify.predictions import Prediction
 from studies.measurement.identify.problem import Problem, chance_of
@@ -30,7 +30,7 @@ from studies.measurement.identify.result import TOO_SMALL, Fit, determined, judg
 from studies.measurement.identify.soundness import sound
 from studies.measurement.identify.starts import predictions_of
 from studies.measurement.identify.unsteady import unsteady_starts
-from studies.physics.parameters import require_names, with_values
+from studies.physics.parameters import parameters_of, require_names, with_values
 
 Array = NDArray[np.float64]
 
@@ -47,6 +47,9 @@ SHORT = 20.0
 
 LOST = 30.0
 """Error of a parameter over its value at which the record does not depend on it: no profile shows more."""
+
+TONE = 0.7
+"""Part of what does not repeat that a hum must have to be the reason why there is no fit."""
 
 AGAIN, BETTER = 4, 0.2
 """How often a fit begins again at a better point of a profile, and by how much chi^2 is less there."""
@@ -111,8 +114,9 @@ def _displacement(
             found = _solved(starts, *given)
         else:  # a linear motion, its stop far away while it is fitted
             prediction, begun, own = linear.start(oscillator, names, free)
-            found = _solved([(prediction, begun)], own, *given[1:])
-            found = replace(found, oscillator=with_values(found.oscillator, {"gap": oscillator.stop.gap}))
+            best = _solved([(prediction, begun)], own, *given[1:])
+            linear.require_decay(parameters_of(best.oscillator)["decay_rate"].value)
+            found = replace(best, oscillator=with_values(best.oscillator, {"gap": oscillator.stop.gap}))
         if not found.too_small:
             return found
     except NoAnswer as error:
@@ -130,7 +134,10 @@ def _displacement(
                 note = f"{words[0]}: the fit is one of a transient or a chaotic motion{rows}"
                 return replace(other, record=replace(other.record, notes=(*record.notes, note)))
     if found is None:
-        raise failure or NoAnswer("no motion like the record's was found")
+        pace = linear.frequency / period_of(times, x, linear.frequency)
+        hum = added(times, x, pace, TONE) if 2.0 < pace * (times[-1] - times[0]) else []
+        reasons = [*hum, str(failure or "no motion like the record's was found")]
+        raise NoAnswer("; ".join(reasons))
     return found
 
 
@@ -157,6 +164,8 @@ def _walked(found: Fit) -> tuple[dict[str, tuple[float, float]], Point | None]:
 
 def _best(problems: Sequence[Problem], known: bool) -> tuple[Problem, Found]:
     """The problem that is solved best, and its solution: all are begun, the best that differ are finished."""
+    if not problems:
+        raise NoAnswer("no motion like the record's was found to start from")
     rows = problems[0].observed.size
     if rows < problems[0].unknowns + (not known):
         raise NoAnswer(

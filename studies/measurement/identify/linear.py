@@ -33,9 +33,9 @@ LOGS = -3.0, 3.0
 FREE, DECAYS, AWAY = np.geomspace(0.5, 2.0, 40), (0.03, 0.1, 0.3), 1e3
 """Free periods and decay rates that a search begins with, by the drive period; gap by the largest reading."""
 
-SEEN, NOISE = 40.0, 2.0
+SEEN, NOISE, LASTS = 40.0, 2.0, 0.05
 """Fall of chi^2 by which a free mode is seen, or this motion is better than an orbit; what it may leave over
-the noise between neighbouring rows."""
+the noise between neighbouring rows; decay rate times span of a line that does not decay."""
 
 
 class Linear:
@@ -72,6 +72,14 @@ class Linear:
             return False
         orbit = repetition(self.times, self.values, self.frequency).min()
         return bool(self.times.size * ((orbit / self.rest) ** 2 - 1.0) > SEEN)
+
+    def require_decay(self, rate: float) -> None:
+        """NoAnswer if a free mode with this decay rate [1/s] hardly decays."""
+        if self.decays and rate * (self.times[-1] - self.times[0]) < LASTS:
+            tone = (
+                f"a line at {1.0 / self.free_period:.4g} Hz of {1e3 * abs(self.free):.2g} mm does not decay"
+            )
+            raise NoAnswer(f"{tone}: hum, or a free mode that needs a longer record")
 
     def start(
         self, oscillator: ImpactOscillator, names: Sequence[str], free: Sequence[str]

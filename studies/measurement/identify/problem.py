@@ -31,6 +31,9 @@ SETTLED = 0.1
 RANGES = {"decay_rate": (0.0, math.inf), "restitution": (0.0, 1.0)}
 """The parameters that may come close to an end of their range; there a logarithm would have no end."""
 
+FARTHEST = {"free_period": 2.0, "frequency": 2.0}
+"""Logarithm by which a search may leave where it begins: a motion of endless oscillations takes for ever."""
+
 LAGS = 10
 """Number of lags in the autocorrelation of residuals."""
 
@@ -69,6 +72,8 @@ class Problem:
         self.steady, self.response = self._steady(), 1.0 + 0j
         self.response = self._response(values)
         self.start = self.unknowns_of(values)
+        ends = [FARTHEST.get(name, math.inf) for name in names]
+        self.farthest = np.append(ends, np.full(prediction.sizes.size, math.inf))
         ranges = [RANGES.get(name, (-math.inf, math.inf)) for name in names]
         ranges += [(-math.inf, math.inf)] * prediction.sizes.size
         self.bounds = np.array(ranges).T / self.sizes
@@ -143,6 +148,8 @@ class Problem:
     def residuals(self, unknowns: Array) -> Array:
         """Residuals of rows and priors; not a number where there is no motion, which rejects the step."""
         try:
+            if np.any(np.abs(unknowns - self.start) > self.farthest):
+                raise NoAnswer("free period or drive frequency is far from where the search begins")
             predicted = self.prediction.values(*self.at(unknowns)).ravel()
         except (ContactError, Refusal):
             return np.full(self.observed.size + self.held.size, np.nan)

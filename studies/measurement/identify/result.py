@@ -38,9 +38,9 @@ OPEN = ("stiffness",)
 SIZES = {"restitution": 0.5, "phase": 1.0, "offset": math.inf}
 """Least size of a number that an error is compared with: some may be zero."""
 
-PART, LOST = 0.3, 2.0
+PART, LOST, LONGEST = 0.3, 2.0, 700.0
 """Part of the largest from which a parameter takes part in a direction that is not determined; standard error
-of a logarithm above which its parameter is not determined."""
+of a logarithm above which its parameter is not determined; logarithm of the longest interval."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -122,7 +122,7 @@ class Fit:
         log = self.problem.log[self.problem.named]
         wide = self.reach * np.sqrt(np.diag(self.covariance))
         found = self.estimate[:, None] + np.outer(wide, [-1.0, 1.0])
-        factor = np.exp(wide[log] / self.estimate[log])
+        factor = np.exp(np.minimum(wide[log] / self.estimate[log], LONGEST))
         found[log] = self.estimate[log, None] * np.column_stack([1.0 / factor, factor])
         for i, name in enumerate(self.names):
             if name == "restitution" and 0.0 < (r := self.estimate[i]) < 1.0:
