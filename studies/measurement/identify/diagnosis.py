@@ -11,58 +11,25 @@ import math
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.fft import next_fast_len, rfft
 from scipy.linalg import lstsq
 from scipy.optimize import minimize_scalar
-from scipy.signal import detrend, find_peaks, medfilt
+from scipy.signal import medfilt
 
-from studies.measurement.identify.spectrum import count_of, harmonics
+from studies.measurement.identify.spectrum import NEAR, count_of, orbit_of, peaks, repetition, scatter
 
 Array = NDArray[np.float64]
 
-STRONG, NEAR, RESOLVED, UNRESOLVED = 0.3, 3e-3, 0.05, 0.3
-"""Height of the drive's line over the strongest (settled motions: above 0.7). Part by which it may be off, or
-part of 1/span, by which other lines move one in a record of three orbits and in a shorter one."""
-STICKING, STRAY, SURE, ALIKE, MANY, LIKE = 6.0, 12.0, 8.0, 0.025, 6000, 1.3
+STRONG, RESOLVED, UNRESOLVED = 0.3, 0.05, 0.3
+"""Height of the drive's line over the strongest (settled motions: above 0.7). Part of 1/span by which other
+lines move one in a record of three orbits and in a shorter one."""
+STICKING, STRAY, SURE, ALIKE, MANY = 6.0, 12.0, 8.0, 0.025, 6000
 """Rows at an extreme reading over rows at the next (turning point: 2.4, flat: 5.3). Standard deviations of an
 outlier (corners: 8), of an estimate that is no chance. Part that an orbit leaves (noise of 1 %: 0.016); rows
-that suffice to see it."""
+by which a filter is seen."""
 MISREAD = {1.0: "", 1e-3: "in kHz", 2.0 * math.pi: "in rad/s", 60.0: "in 1/min", 2.0: "2 f", 0.5: "f/2"}
 MISREAD[1e3] = "right if time_s is in ms: divide it by 1e3"
 MISREAD[1e6] = "right if time_s is in µs: divide it by 1e6"
 """What a given drive may be, by its ratio to that of the record."""
-
-
-def peaks(times: Array, values: Array) -> tuple[Array, Array]:
-    """Frequencies [Hz] of the lines of a record, the strongest first, and their heights over its height."""
-    rows, span = times.size, float(times[-1] - times[0])
-    even = detrend(np.interp(np.linspace(times[0], times[-1], rows), times, values))
-    size = next_fast_len(8 * rows, real=True)
-    height = np.log(np.abs(rfft(even * np.hanning(rows), size)) + 1e-300)
-    first = int(1.5 * size / rows)  # below it are the mean and a drift
-    tops = find_peaks(height[first:])[0]
-    at = first + (tops[np.argsort(-height[first + tops])] if tops.size else np.zeros(1, int))
-    low, middle, high = (height[at + way] for way in (-1, 0, 1))
-    moved = 0.5 * (low - high) / np.minimum(low - 2.0 * middle + high, -1e-9)
-    return (at + np.clip(moved, -1.0, 1.0)) * (rows - 1) / (span * size), np.exp(middle - middle[0])
-
-
-def orbit_of(times: Array, values: Array, pace: float) -> tuple[NDArray[np.complex128], float]:
-    """Lines of an orbit that repeats with `pace` [Hz], as far as rows resolve, and what they leave [m]."""
-    rows = np.sort(np.random.default_rng(0).permutation(times.size)[:MANY])  # equal steps hide some lines
-    return harmonics(times[rows], values[rows], pace, count_of(times, pace))
-
-
-def repetition(times: Array, values: Array, frequency: float) -> Array:
-    """What orbits of 1, 2, ... drive periods leave of a record [m], up to 12, if it has two of them."""
-    most = max(1, min(12, int((times[-1] - times[0]) * frequency / 2.0)))
-    return np.array([orbit_of(times, values, frequency / m)[1] for m in range(1, most + 1)])
-
-
-def period_of(times: Array, values: Array, frequency: float) -> int:
-    """Drive periods after which a record nearly repeats, or the best that there is."""
-    left = repetition(times, values, frequency)
-    return int(np.argmax(left < LIKE * left.min())) + 1
 
 
 def drive_found(times: Array, values: Array, frequency: float) -> tuple[float, str] | None:
@@ -74,7 +41,7 @@ def drive_found(times: Array, values: Array, frequency: float) -> tuple[float, s
     off, short = float(np.min(np.abs(lines - seen))), lines[0] * span < 6.0 and 0.3 < frequency * span < 2.0
     if np.ptp(values) == 0.0 or short or off <= max(NEAR * frequency, RESOLVED / span):
         return None
-    if off * span < UNRESOLVED and repetition(times, values, float(lines[0])).min() > ALIKE * values.std():
+    if off * span < UNRESOLVED and scatter(times, values, float(lines[0])).min() > ALIKE * values.std():
         return None
     for at in lines.tolist():
         for factor, words in MISREAD.items():
@@ -163,7 +130,7 @@ def walked(times: Array, values: Array, frequency: float, period: int) -> list[s
 
 def filtered(times: Array, values: Array, predicted: Array, pace: float) -> list[str]:
     """A filter of one pole: predictions over readings, line by line, have squares 1 + (nu/corner)^2."""
-    (read, noise), known = orbit_of(times, values, pace), orbit_of(times, predicted, pace)[0]
+    (read, noise), known = orbit_of(times, values, pace, MANY), orbit_of(times, predicted, pace, MANY)[0]
     error = noise / math.sqrt(2.0 * min(times.size, MANY))
     order = 1 + np.flatnonzero(np.abs(known[1:]) > 10.0 * error)
     if order.size < 6:
@@ -184,7 +151,7 @@ def wanders(times: Array, values: Array, residuals: Array, frequency: float) -> 
     quiet = int(np.argmin(size > 3.0 * np.median(size)))
     if len(parts) > 3 and quiet > 0 and np.all(size[quiet:] < 3.0 * np.median(size)):
         return [f"the residuals fade within the first {times[parts[quiet][0]] - times[0]:.2g} s: a transient"]
-    left = repetition(times, values, frequency)
+    left = scatter(times, values, frequency)
     if left.min() > max(ALIKE * values.std(), 3.0 * off_neighbours(times, values)[1]):
         return [f"the record does not repeat within {left.size} drive periods"]
     return []
@@ -192,7 +159,7 @@ def wanders(times: Array, values: Array, residuals: Array, frequency: float) -> 
 
 def contradictions(times: Array, values: Array, residuals: Array, frequency: float, period: int) -> list[str]:
     """What residuals show that are no noise; the drive is at `frequency` [Hz], a `period` 0 is unknown."""
-    period = period or period_of(times, values, frequency)
+    period = period or repetition(times, values, frequency)
     pace, bare = frequency / period, np.abs(residuals - medfilt(residuals, 5))
     off = 3.0 * off_neighbours(times, values)[0]
     stray = np.minimum(bare / (1.4826 * np.median(bare[bare > 0.0])), off)

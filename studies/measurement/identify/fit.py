@@ -20,7 +20,7 @@ from beam import Refusal
 from contact import ContactError, ImpactOscillator
 from studies import letter
 from studies.measurement.identify.descent import Found
-from studies.measurement.identify.diagnosis import added, period_of, wanders
+from studies.measurement.identify.diagnosis import added, wanders
 from studies.measurement.identify.linear import Linear
 from studies.measurement.identify.predictions import Prediction
 from studies.measurement.identify.problem import Problem, chance_of
@@ -28,6 +28,7 @@ from studies.measurement.identify.profiles import Point
 from studies.measurement.identify.records import READ_OUT, NoAnswer, Record
 from studies.measurement.identify.result import TOO_SMALL, Fit, determined, judged
 from studies.measurement.identify.soundness import sound
+from studies.measurement.identify.spectrum import repetition
 from studies.measurement.identify.starts import predictions_of
 from studies.measurement.identify.unsteady import unsteady_starts
 from studies.physics.parameters import parameters_of, require_names, with_values
@@ -134,7 +135,7 @@ def _displacement(
                 note = f"{words[0]}: the fit is one of a transient or a chaotic motion{rows}"
                 return replace(other, record=replace(other.record, notes=(*record.notes, note)))
     if found is None:
-        pace = linear.frequency / period_of(times, x, linear.frequency)
+        pace = linear.frequency / repetition(times, x, linear.frequency)
         hum = added(times, x, pace, TONE) if 2.0 < pace * (times[-1] - times[0]) else []
         reasons = [*hum, str(failure or "no motion like the record's was found")]
         raise NoAnswer("; ".join(reasons))

@@ -16,10 +16,11 @@ from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
 from contact import ImpactOscillator
-from studies.measurement.identify.diagnosis import off_neighbours, peaks, repetition
+from studies.measurement.identify.diagnosis import off_neighbours
 from studies.measurement.identify.displacement import SENSOR, Displacement
 from studies.measurement.identify.kicks import poles
 from studies.measurement.identify.records import NoAnswer, Record
+from studies.measurement.identify.spectrum import peaks, scatter
 from studies.physics.parameters import with_values
 
 Array = NDArray[np.float64]
@@ -70,7 +71,7 @@ class Linear:
         """Whether this leaves noise, and less than any orbit."""
         if not self.decays or self.rest > NOISE * off_neighbours(self.times, self.values)[1]:
             return False
-        orbit = repetition(self.times, self.values, self.frequency).min()
+        orbit = scatter(self.times, self.values, self.frequency).min()
         return bool(self.times.size * ((orbit / self.rest) ** 2 - 1.0) > SEEN)
 
     def require_decay(self, rate: float) -> None:

@@ -22,8 +22,13 @@ OFF, APART, BEYOND = 0.01, 100.0, 10.0
 one of units; of the largest strobe point to the gap."""
 
 
-RATIOS = ((1e3, 3.0), (1e6, 3.0), (9.81, 1.01), (2.0 * math.pi, 1.01))
-"""Ratios of units, and by which factor another may differ and still be one: 10 is none."""
+RATIOS = (
+    ("milli{}", "1000", 1e3, 3.0, ("gap", "amplitude", "free_period")),
+    ("micro{}", "1e6", 1e6, 3.0, ("gap", "amplitude", "free_period")),
+    ("units of g", "9.81", 9.81, 1.01, ("amplitude",)),
+    ("an angular frequency", "2 pi", 2.0 * math.pi, 1.01, ("free_period", "frequency")),
+)
+"""Units, their ratio, by which factor another may differ and still be one (10 is none), and of what."""
 
 
 def sound(record: Record, oscillator: ImpactOscillator) -> tuple[Record, ImpactOscillator]:
@@ -51,16 +56,10 @@ def sound(record: Record, oscillator: ImpactOscillator) -> tuple[Record, ImpactO
 def unit_of(found: float, given: float, what: str) -> str | None:
     """Words for the unit in which the record or the given value of `what` would agree with the other one."""
     base = "seconds" if "period" in what else "metres"
-    names = {
-        "1000": f"milli{base}",
-        "1e6": f"micro{base}",
-        "9.81": "units of g",
-        "2 pi": "an angular frequency",
-    }
-    for (number, unit), (factor, near) in zip(names.items(), RATIOS, strict=True):
+    for unit, number, factor, near, whose in RATIOS:
         for one, other, thing in ((given, found, f"the given {what}"), (found, given, "the record")):
-            if 1.0 / near < one / (factor * other) < near:
-                return f"{thing} looks like {unit}: divide by {number}"
+            if what in whose and 1.0 / near < one / (factor * other) < near:
+                return f"{thing} looks like {unit.format(base)}: divide by {number}"
     return None
 
 

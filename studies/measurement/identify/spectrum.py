@@ -6,6 +6,8 @@ import math
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.fft import next_fast_len, rfft
+from scipy.signal import detrend, find_peaks
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -20,9 +22,22 @@ LINES, DRIVES, HIGH, ENOUGH = 6, 4, 0.05, 1500
 """Lines of the spectrum that give an orbit, harmonics of it that may be the drive, their least part of the
 highest; rows that show whether a record repeats."""
 
-
 ROUND = 1e-11
 """Part by which the diagonal of normal equations is raised: harmonics that the rows do not show are small."""
+
+
+def peaks(times: Array, values: Array) -> tuple[Array, Array]:
+    """Frequencies [Hz] of the lines of a record, the strongest first, and their heights over its height."""
+    rows, span = times.size, float(times[-1] - times[0])
+    even = detrend(np.interp(np.linspace(times[0], times[-1], rows), times, values))
+    size = next_fast_len(8 * rows, real=True)
+    height = np.log(np.abs(rfft(even * np.hanning(rows), size)) + 1e-300)
+    first = int(1.5 * size / rows)  # below it are the mean and a drift
+    tops = find_peaks(height[first:])[0]
+    at = first + (tops[np.argsort(-height[first + tops])] if tops.size else np.zeros(1, int))
+    low, middle, high = (height[at + way] for way in (-1, 0, 1))
+    moved = 0.5 * (low - high) / np.minimum(low - 2.0 * middle + high, -1e-9)
+    return (at + np.clip(moved, -1.0, 1.0)) * (rows - 1) / (span * size), np.exp(middle - middle[0])
 
 
 def harmonics(times: Array, values: Array, pace: float, count: int) -> tuple[Complex, float]:
@@ -44,55 +59,39 @@ def count_of(times: Array, pace: float) -> int:
     return max(2, int(min(MOST_HARMONICS, 0.42 * rate / pace, min(times.size, ENOUGH) // 6)))
 
 
-def line(times: Array, values: Array, frequency: float, near: float) -> float:
-    """The strongest line of the spectrum within a part `near` of a frequency [Hz]."""
-    span, off = times[-1] - times[0], (values - values.mean()) * np.hanning(times.size)
+def orbit_of(times: Array, values: Array, pace: float, most: int = ENOUGH) -> tuple[Complex, float]:
+    """Lines of an orbit that repeats with `pace` [Hz], as far as rows resolve, and what they leave [m]; of so
+    many rows at most, at random: equal steps hide some lines."""
+    rows = np.sort(np.random.default_rng(0).permutation(times.size)[:most])
+    return harmonics(times[rows], values[rows], pace, count_of(times, pace))
 
-    def power(at: Array) -> Array:
-        return np.abs(np.exp(-2j * math.pi * np.outer(at, times - times[0])) @ off)
 
-    grid = np.linspace(
-        frequency * (1 - near), frequency * (1 + near), max(9, int(12 * frequency * near * span))
-    )
-    best, step = float(grid[np.argmax(power(grid))]), float(grid[1] - grid[0])
-    for _ in range(12):
-        low, middle, high = power(best + step * np.array([-1.0, 0.0, 1.0]))
-        bend = low - 2.0 * middle + high
-        best += step * float(np.clip(0.5 * (low - high) / bend, -1.0, 1.0)) if bend < 0.0 else 0.0
-        step *= 0.4
-    return best
+def scatter(times: Array, values: Array, frequency: float) -> Array:
+    """What orbits of 1, 2, ... drive periods leave of a record [m], up to 12, if it has two of them."""
+    most = max(1, min(LONGEST, int((times[-1] - times[0]) * frequency / 2.0)))
+    return np.array([orbit_of(times, values, frequency / m)[1] for m in range(1, most + 1)])
+
+
+def repetition(times: Array, values: Array, frequency: float) -> int:
+    """Drive periods after which a record repeats, or nearly so."""
+    left = scatter(times, values, frequency)
+    return int(np.argmax(left < SAME * left.min())) + 1
 
 
 def drives(times: Array, values: Array, given: float | None) -> list[tuple[float, int]]:
     """Drive frequencies [Hz] that a record may have, each with its period m; several if none is `given`."""
+    lines = peaks(times, values)[0]
+
+    def nearest(frequency: float) -> float:
+        return float(lines[np.argmin(np.abs(lines - frequency))])
+
     if given is not None:
-        found = line(times, values, given, NEAR)
+        near = nearest(given)
+        found = near if abs(near / given - 1.0) < NEAR else given
         return [(found, repetition(times, values, found))]
-    rate = (times.size - 1) / (times[-1] - times[0])
-    even = np.linspace(times[0], times[-1], times.size)
-    spectrum = np.abs(np.fft.rfft((np.interp(even, times, values) - values.mean()) * np.hanning(times.size)))
-    peaks = np.flatnonzero((spectrum[1:-1] > spectrum[:-2]) & (spectrum[1:-1] >= spectrum[2:])) + 1
-    strongest = peaks[np.argsort(-spectrum[peaks])][:LINES]
-    step = rate / times.size
-    lines = [line(times, values, float(i) * step, 1.0 / i) for i in strongest if i > 1]
-    rows = sample(times)
-    paces = [one / m for one in lines for m in range(1, LONGEST // 2 + 1)]
-    scatter = [harmonics(times[rows], values[rows], pace, count_of(times, pace))[1] for pace in paces]
-    base = max(pace for pace, size in zip(paces, scatter, strict=True) if size < SAME * min(scatter))
+    paces = [one / m for one in lines[:LINES].tolist() for m in range(1, LONGEST // 2 + 1)]
+    left = np.array([orbit_of(times, values, pace)[1] for pace in paces])
+    base = max(pace for pace, size in zip(paces, left, strict=True) if size < SAME * left.min())
     heights = np.abs(harmonics(times, values, base, min(LONGEST, count_of(times, base)))[0][1:])
     likely = [int(m) + 1 for m in np.argsort(-heights)[:DRIVES] if heights[m] > HIGH * heights.max()]
-    return [(line(times, values, m * base, 0.5 / (m * base * (times[-1] - times[0]))), m) for m in likely]
-
-
-def sample(times: Array) -> NDArray[np.int64]:
-    """Rows at random that show whether a record repeats; equal steps would hide some of its waves."""
-    random = np.random.default_rng(0)
-    return np.sort(random.choice(times.size, min(times.size, ENOUGH), replace=False))
-
-
-def repetition(times: Array, values: Array, frequency: float) -> int:
-    """Drive periods after which a record repeats."""
-    most, rows = max(1, min(LONGEST, int((times[-1] - times[0]) * frequency / 1.5))), sample(times)
-    paces = [frequency / m for m in range(1, most + 1)]
-    scatter = [harmonics(times[rows], values[rows], pace, count_of(times, pace))[1] for pace in paces]
-    return int(np.argmax(np.array(scatter) < SAME * min(scatter))) + 1
+    return [(nearest(m * base), m) for m in likely]
