@@ -67,8 +67,8 @@ def orbit_of(times: Array, values: Array, pace: float, most: int = ENOUGH) -> tu
 
 
 def scatter(times: Array, values: Array, frequency: float) -> Array:
-    """What orbits of 1, 2, ... drive periods leave of a record [m], up to 12, if it has two of them."""
-    most = max(1, min(LONGEST, int((times[-1] - times[0]) * frequency / 2.0)))
+    """What orbits of 1, 2, ... drive periods leave of a record [m], up to 12, if it has 1.5 of them."""
+    most = max(1, min(LONGEST, int((times[-1] - times[0]) * frequency / 1.5)))
     return np.array([orbit_of(times, values, frequency / m)[1] for m in range(1, most + 1)])
 
 
