@@ -40,17 +40,12 @@ LAGS = 10
 TINY = 1e-300
 """Least ratio of a value to where it starts: a step along a tangent may round to zero."""
 
-RESPONSE, STEP = ("free_period", "decay_rate", "frequency", "tip_mass"), 1e-6
-"""The parameters that the response of the tip hangs on; a part of each, for differences of it."""
-
 
 class Problem:
     """Residuals and Jacobian in units of the noise, by unknowns u without units.
 
     A parameter p that starts at p_0 > 0 has u = log(p/p_0).  Others, and those in `RANGES`, have u = p/size.
-    No search leaves the physical range.  Where amplitude Z and phase of the drive are both fitted, the steady
-    motion Y = Z exp(i phase) R of the tip is fitted instead.  R is its response to the base: near a resonance
-    the record determines Y, and hardly Z.  A prior holds the further unknowns.  A `leash` holds the
+    No search leaves the physical range.  A prior holds the further unknowns.  A `leash` holds the
     parameters: a standard deviation of u about where it starts.
     """
 
@@ -69,8 +64,6 @@ class Problem:
         self.log = (np.arange(values.size) < len(names)) & (values > 0.0)
         self.log[[i for i, name in enumerate(names) if name in RANGES]] = False
         self.sizes[self.log] = values[self.log]
-        self.steady, self.response = self._steady(), 1.0 + 0j
-        self.response = self._response(values)
         self.start = self.unknowns_of(values)
         ends = [FARTHEST.get(name, math.inf) for name in names]
         self.farthest = np.append(ends, np.full(prediction.sizes.size, math.inf))
@@ -88,54 +81,21 @@ class Problem:
         self.named = [*range(len(names)), *sensor]
         self.last: tuple[Array, ImpactOscillator, Array] | None = None
 
-    def _steady(self) -> tuple[int, int] | None:
-        """Where amplitude and phase stand among the unknowns, if both are fitted."""
-        sensor = self.prediction.sensor
-        if "amplitude" not in self.names or "phase" not in sensor:
-            return None
-        return self.names.index("amplitude"), self.sizes.size - len(sensor) + sensor.index("phase")
-
-    def _response(self, values: Array) -> complex:
-        """The response of the tip over that at the start."""
-        if self.steady is None:
-            return 1.0 + 0j
-        own = {name: float(values[self.names.index(name)]) for name in RESPONSE if name in self.names}
-        return with_values(self.oscillator, own).tip_response() / self.response
-
     def values(self, unknowns: Array) -> Array:
         """Parameters and further unknowns in their units."""
         found = unknowns * self.sizes
         found[self.log] = self.sizes[self.log] * np.exp(np.clip(unknowns[self.log], -50.0, 50.0))
-        if self.steady is not None:
-            response = self._response(found)
-            found[self.steady[0]] /= abs(response)
-            found[self.steady[1]] -= np.angle(response)
         return np.asarray(found)
 
     def unknowns_of(self, values: Array) -> Array:
         """The inverse of `values`."""
-        found = values.copy()
-        if self.steady is not None:
-            response = self._response(found)
-            found[self.steady[0]] *= abs(response)
-            found[self.steady[1]] += np.angle(response)
-        found = found / self.sizes
+        found = values / self.sizes
         found[self.log] = np.log(np.maximum(found[self.log], TINY))
         return np.asarray(found)
 
     def slopes(self, unknowns: Array) -> Array:
-        """Derivatives of `values` by the unknowns, shape (n, n)."""
-        found, slopes = self.values(unknowns), self.sizes.copy()
-        slopes[self.log] = found[self.log]
-        matrix = np.diag(slopes)
-        if self.steady is not None:
-            amplitude, phase = self.steady
-            for i in [self.names.index(name) for name in RESPONSE if name in self.names]:
-                step = STEP * np.eye(found.size)[i] * found
-                change = np.log(self._response(found + step) / self._response(found - step)) / (2.0 * step[i])
-                matrix[amplitude, i] -= found[amplitude] * change.real * slopes[i]
-                matrix[phase, i] -= change.imag * slopes[i]
-        return matrix
+        """Derivatives of `values` by the unknowns, shape (n,)."""
+        return np.asarray(np.where(self.log, self.values(unknowns), self.sizes))
 
     def at(self, unknowns: Array) -> tuple[ImpactOscillator, Array]:
         """Oscillator and further unknowns; for the same unknowns the same objects."""
@@ -161,7 +121,7 @@ class Problem:
         rows = self.prediction.jacobian(*self.at(unknowns), self.names) * self.weights[:, None]
         if not np.all(np.isfinite(rows)):
             raise NoAnswer("the motion hangs too sensitively on where it begins")
-        return np.vstack([rows @ self.slopes(unknowns), np.diag(self.held)])
+        return np.vstack([rows * self.slopes(unknowns), np.diag(self.held)])
 
     def of(self, prediction: Prediction) -> Problem:
         """The same problem by a prediction that stands elsewhere."""

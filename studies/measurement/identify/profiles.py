@@ -85,7 +85,7 @@ class Walk:
         """A point with the direction in which chi^2 rises least as the parameter moves on."""
         problem = self.problem.of(prediction)
         unknowns = problem.unknowns_of(values)
-        rows = np.linalg.qr(problem.jacobian(unknowns))[1] @ np.linalg.inv(problem.slopes(unknowns))
+        rows = np.linalg.qr(problem.jacobian(unknowns))[1] / problem.slopes(unknowns)
         sizes = np.linalg.norm(rows, axis=0)
         sizes[sizes == 0.0] = 1.0
         others = np.delete(rows / sizes, self.i, axis=1)

@@ -143,7 +143,7 @@ def judged(problem: Problem, found: Found, oscillator: ImpactOscillator, known: 
     _left, singular, axes = np.linalg.svd(found.jac / lengths, full_matrices=False)
     slopes, values = problem.slopes(found.x), problem.values(found.x)
     sizes = np.where(problem.log, LOST * np.abs(values), np.maximum(np.abs(values), problem.sizes))
-    axes = axes / lengths @ slopes.T
+    axes = axes / lengths * slopes
     lost = not singular[-1] > SEEN * singular[0]
     if lost and chance > TOO_SMALL:
         blind = _blind((axes / sizes)[:, own], names)
