@@ -38,7 +38,7 @@ OPEN = ("stiffness",)
 SIZES = {"restitution": 0.5, "phase": 1.0, "offset": math.inf}
 """Least size of a number that an error is compared with: some may be zero."""
 
-PART, LOST, LONGEST = 0.3, 2.0, 700.0
+PART, LOST, LONGEST = 0.3, 2.0, 300.0
 """Part of the largest from which a parameter takes part in a direction that is not determined; standard error
 of a logarithm above which its parameter is not determined; logarithm of the longest interval."""
 
