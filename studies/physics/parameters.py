@@ -46,7 +46,8 @@ a unit."""
 ALIASES = {"T": "free_period", "mu": "decay_rate", "tau": "restitution"}
 """Symbols of the letter that name parameters on the command line."""
 
-OF_LAWS = ("restitution", "delay", "stiffness", "damping", "dissipation")
+OF_SOME = ("tip_mass", "restitution", "delay", "stiffness", "damping", "dissipation")
+"""Parameters that only a model of several modes or some laws have."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -108,13 +109,14 @@ def require_names(
     names: Sequence[str], oscillator: ImpactOscillator, option: str = "fit", more: Iterable[str] = ()
 ) -> None:
     """ValueError unless each names a parameter of this oscillator, or is one of `more`, given once."""
-    known, law = [*parameters_of(oscillator), *more], type(oscillator.stop.law).__name__
+    known, count = [*parameters_of(oscillator), *more], oscillator.n_modes
     for name in names:
-        if name not in known and name in OF_LAWS:
+        if name not in known and name in OF_SOME:
+            whose = f"{type(oscillator.stop.law).__name__} with {count} mode{'s' * (count > 1)}"
             others = ", ".join(known)
-            raise InvalidValue(f"{option} names {name}, which {law} does not have; there are {others}")
+            raise InvalidValue(f"{option} names {name}, which {whose} does not have; there are {others}")
         if name not in known:
-            nearest = get_close_matches(name[:60], [*known, *OF_LAWS, *ALIASES], n=1, cutoff=0.0)[0]
+            nearest = get_close_matches(name[:60], [*known, *OF_SOME, *ALIASES], n=1, cutoff=0.0)[0]
             raise InvalidValue(f"{option} names {name[:60]!r}, no parameter; the nearest is {nearest}")
     if len(set(names)) < len(names) or not names:
         raise InvalidValue(f"{option} names {', '.join(names) or 'nothing'}; it must name each one once")

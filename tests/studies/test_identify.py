@@ -133,7 +133,7 @@ def test_in_loud_noise_one_parameter_is_named_the_one_whose_error_is_above_its_v
         ("one_mode", "transitions", ("free_period", "gap"), "gap"),
         ("one_mode", "transitions", (*NAMES, "frequency", "amplitude"), "too short"),
         ("one_mode", "strobe", ("gapp",), "nearest is gap"),
-        ("one_mode", "strobe", ("delay",), "NewtonRestitution does not have"),
+        ("one_mode", "strobe", ("delay",), "NewtonRestitution with 1 mode does not have"),
         ("one_mode", "strobe", ("gap", "gap"), "once"),
     ],
 )
