@@ -197,7 +197,7 @@ def _best(problems: Sequence[Problem], known: bool) -> tuple[Problem, Found]:
                     raise NoAnswer(f"the motion that is like the first {sizes[0]} rows is unlike later ones")
                 unknowns = found.x
             found = problem.solve(unknowns)
-            chance = chance_of(found.fun[:rows], problem.prediction, known, problem.freedom)
+            chance = chance_of(problem, found, known)
             enough = enough or chance > TOO_SMALL
             ends.append((problem, found))
         except (ContactError, Refusal) as error:

@@ -14,6 +14,7 @@ from contact import ContactError, ImpactOscillator
 from studies.measurement.identify.descent import Found, descend
 from studies.measurement.identify.predictions import Prediction
 from studies.measurement.identify.records import NoAnswer
+from studies.measurement.identify.spectrum import count_of, harmonics
 from studies.physics.parameters import parameters_of, with_values
 
 Array = NDArray[np.float64]
@@ -144,21 +145,35 @@ class Problem:
         )
 
 
-def chance_of(residuals: Array, prediction: Prediction, known: bool, freedom: int) -> float:
+def chance_of(problem: Problem, solved: Found, known: bool) -> float:
     """Probability of residuals of this size or pattern from noise alone."""
+    prediction, freedom = problem.prediction, problem.freedom
+    residuals = solved.fun[: problem.observed.size]
     found = [float(stats.chi2.sf(residuals @ residuals, freedom))] if known else []
     kind, period = prediction.record.kind, prediction.period
     if kind == "strobe":
         rows = residuals.reshape(len(prediction.record.rows), -1)
         means = np.array([rows[k::period].mean(axis=0) for k in range(period)])
         within = float(np.sum((rows - means[np.arange(len(rows)) % period]) ** 2))
-        more, spare = freedom - residuals.size + means.size, residuals.size - means.size
-        if more > 0 and spare > 0:
-            ratio = (residuals @ residuals - within) / more / (within / spare)
-            found.append(float(stats.f.sf(ratio, more, spare)))
+        found += _beyond(float(residuals @ residuals), within, freedom - residuals.size + means.size, freedom)
     if kind == "displacement":
         size, off = residuals.size, residuals - residuals.mean()
         lagged = np.array([off[k:] @ off[:-k] for k in range(1, LAGS + 1)]) / (off @ off)
         box = size * (size + 2) * np.sum(lagged**2 / (size - np.arange(1, LAGS + 1)))
         found.append(float(stats.chi2.sf(box, LAGS)))
+        if period:
+            times = prediction.record.rows[:, 0]
+            pace = problem.at(solved.x)[0].driven.frequency / period
+            lines, scatter = harmonics(times, residuals, pace, count_of(times, pace))
+            more = 2 * lines.size - 1 - problem.unknowns
+            within = scatter**2 * (size - 2 * lines.size + 1)
+            found += _beyond(float(residuals @ residuals), within, more, freedom)
     return min(1.0, len(found) * min(found)) if found else 1.0
+
+
+def _beyond(whole: float, within: float, more: int, freedom: int) -> list[float]:
+    """Probability that so many numbers `more` than those that are fitted leave no more than this of chi^2."""
+    spare = freedom - more
+    if more < 1 or spare < 1:
+        return []
+    return [float(stats.f.sf((whole - within) / more / (within / spare), more, spare))]

@@ -137,7 +137,7 @@ def judged(problem: Problem, found: Found, oscillator: ImpactOscillator, known: 
     prediction, rows = problem.prediction, problem.observed.size
     spread = 1.0 if known else float(np.sqrt(found.chi2 / problem.freedom))
     names, own = problem.names + prediction.sensor, problem.named
-    chance = chance_of(found.fun[:rows], prediction, known, problem.freedom)
+    chance = chance_of(problem, found, known)
     lengths = np.linalg.norm(found.jac, axis=0)
     lengths[lengths == 0.0] = 1.0
     _left, singular, axes = np.linalg.svd(found.jac / lengths, full_matrices=False)

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from contextlib import suppress
 
 import numpy as np
 from numpy.typing import NDArray
@@ -56,6 +57,9 @@ FACTORS = (0.1, 10.0, 0.3, 3.0, 0.03, 30.0)
 
 RESTITUTIONS = (0.1, 0.3, 0.6, 0.9)
 """Restitutions that are tried beside the ones of the record and the scene."""
+
+ASIDE = (0.97, 0.99, 0.997, 0.999, 1.001, 1.003, 1.01, 1.03)
+"""Factors of gap or amplitude that are tried where no orbit closes: near its fold it may lack by little."""
 
 LOOKED = 200
 """Times of an orbit at which the tip may be farthest from the stop, where its state begins."""
@@ -222,10 +226,26 @@ def starts_at(
     tried = [with_values(begun, other) for other in others]
     given = [with_values(oscillator, {"frequency": begun.driven.frequency})]
     given = [] if few or not oscillator.driven.amplitude else given
-    return [
-        (Displacement(record, one, start, sensor, free, period=motion.period, clock=lowest), one)
-        for one in [*(_behind(one, start, lowest, lasting) for one in tried), *given]
-    ]
+    moved = next((name for name in ("gap", "amplitude") if name in names), None)
+    pairs = list[tuple[Displacement, ImpactOscillator]]()
+    for one in [*(_behind(one, start, lowest, lasting) for one in tried), *given]:
+        prediction = Displacement(record, one, start, sensor, free, period=motion.period, clock=lowest)
+        pairs.append((prediction, _closing(prediction, one, moved)))
+    return pairs
+
+
+def _closing(prediction: Displacement, oscillator: ImpactOscillator, name: str | None) -> ImpactOscillator:
+    """The oscillator; where no orbit closes, with the value of this name near by that fits best."""
+    part, found = prediction.parts()[0], list[tuple[float, float]]()
+    value = parameters_of(oscillator)[name or "gap"].value
+    for factor in (1.0, *(ASIDE if name else ())):
+        with suppress(ContactError, Refusal):
+            at = with_values(oscillator, {name or "gap": factor * value})
+            off = part.again().values(at, part.extra) - part.record.observed
+            if factor == 1.0:
+                return oscillator
+            found.append((float(np.sum(off**2)), factor))
+    return with_values(oscillator, {name: min(found)[1] * value}) if name and found else oscillator
 
 
 def _behind(oscillator: ImpactOscillator, start: Array, clock: float, lasting: float) -> ImpactOscillator:
