@@ -25,7 +25,7 @@ from studies.measurement.identify.linear import Linear
 from studies.measurement.identify.predictions import Prediction
 from studies.measurement.identify.problem import Problem, chance_of
 from studies.measurement.identify.profiles import Point
-from studies.measurement.identify.records import READ_OUT, NoAnswer, Record
+from studies.measurement.identify.records import READ_OUT, NoAnswer, Record, Undetermined
 from studies.measurement.identify.result import TOO_SMALL, Fit, determined, judged
 from studies.measurement.identify.soundness import sound
 from studies.measurement.identify.spectrum import repetition
@@ -107,10 +107,10 @@ def _displacement(
 ) -> Fit:
     """The best fit of a displacement: of a linear motion, of one that repeats, or of one that does not."""
     given = names, oscillator, unit, known
-    linear, failure = Linear(record), None
+    linear, failure, starts = Linear(record), None, list[tuple[Prediction, ImpactOscillator]]()
     found: Fit | None = None
     try:
-        starts = [] if linear.likely else predictions_of(record, oscillator, names, free)
+        starts += [] if linear.likely else predictions_of(record, oscillator, names, free)
         if starts:
             found = _solved(starts, *given)
         else:  # a linear motion, its stop far away while it is fitted
@@ -121,6 +121,8 @@ def _displacement(
         if not found.too_small:
             return found
     except NoAnswer as error:
+        if starts and isinstance(error, Undetermined):
+            raise
         failure = error
     times, x = record.rows.T
     residuals = found.residuals[:, 0] if found else x - x.mean()

@@ -53,6 +53,10 @@ class NoAnswer(ContactError):
         RuntimeError.__init__(self, sentence)
 
 
+class Undetermined(NoAnswer):
+    """A record that a model fits, and that does not determine its parameters."""
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Record:
     """A record: its `columns`, `rows` of shape (n_rows, n_columns), and the drive where it is known.

@@ -21,7 +21,7 @@ from studies.measurement.identify.descent import SEEN, Found
 from studies.measurement.identify.displacement import SENSOR
 from studies.measurement.identify.problem import MOST, SETTLED, Problem, chance_of
 from studies.measurement.identify.profiles import Walk
-from studies.measurement.identify.records import NoAnswer, Record
+from studies.measurement.identify.records import NoAnswer, Record, Undetermined
 from studies.physics.parameters import parameters_of
 
 Array = NDArray[np.float64]
@@ -147,7 +147,7 @@ def judged(problem: Problem, found: Found, oscillator: ImpactOscillator, known: 
     lost = not singular[-1] > SEEN * singular[0]
     if lost and chance > TOO_SMALL:
         blind = _blind((axes / sizes)[:, own], names)
-        raise NoAnswer(f"the record cannot {blind}: fit fewer parameters or another record")
+        raise Undetermined(f"the record cannot {blind}: fit fewer parameters or another record")
     covariance = (axes.T / np.maximum(singular, SEEN * singular[0]) ** 2 @ axes * spread**2)[np.ix_(own, own)]
     before = parameters_of(oscillator)
     return Fit(
@@ -181,7 +181,7 @@ def determined(found: Fit) -> Fit:
         by_slopes = np.where(share <= 1.0, 0.0, np.sqrt(np.diag(found.covariance)) / sizes)
         worst, blind = found.names[int(np.argmax(by_slopes))], _blind(axes, found.names)
         blind = blind if worst in blind.split() else f"determine {worst}"
-        raise NoAnswer(f"the record cannot {blind}: the standard error of {worst} is above its value")
+        raise Undetermined(f"the record cannot {blind}: the standard error of {worst} is above its value")
     if not found.settled and not found.too_small:
         fall = f"chi^2 would still fall by {found.left:.2g}"
         raise NoAnswer(f"the fit has not settled after {MOST} steps: {fall}")
