@@ -80,6 +80,8 @@ def with_tip_mass(model: ModalModel, mass: float) -> ModalModel:
     omega, _rates, lead = _frequencies(model)
     require(bool(model.tip_mass), f"tip_mass is {model.tip_mass} kg; the model must have one, above zero")
     added = require_within("mass", mass, "kg", above=0) - float(model.tip_mass or 0.0)
+    left = 1.0 + added * float(model.phi @ model.phi)
+    require(left > 0.0, f"mass is {mass} kg; with phi = {model.phi} that leaves a mode less than no mass")
     inertia = np.eye(model.n_modes) + added * np.outer(model.phi, model.phi)
     found, shapes = eigh(np.diag(omega**2), inertia)
     place = np.argsort(np.argsort(omega))  # one more mass moves no frequency beyond the next

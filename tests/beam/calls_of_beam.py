@@ -210,6 +210,9 @@ BEAM = (
     of(beam.with_tip_mass, lambda: dict(model=beam.ModalModel(**MODAL, tip_mass=0.004), mass=0.003),
        kind=dict(model="no", mass="3 g"),
        value=dict(model=told(one_mode(), "tip_mass is None kg"), mass=each(-1.0, 0.0))),
+    of(lambda mass: beam.with_tip_mass(
+           beam.ModalModel(**MODAL | dict(phi=[10.0, 19.0]), tip_mass=0.004), mass),  # type: ignore[arg-type]
+       dict(mass=0.004), name="with_tip_mass, of modes that need more", value=dict(mass=1e-4)),
     of(beam.UniformBeam, lambda: fields_of(uniform()),
        value=dict(length=0.0, bending_stiffness=NAN, supports=each(("clamped",), 2))),
     of(beam.UniformBeam, lambda: fields_of(uniform()) | dict(supports=("free", "clamped")),

@@ -16,10 +16,13 @@ from beam import InvalidValue
 from contact import State, simulate
 from studies.measurement.identify import figure
 from studies.measurement.identify.__main__ import answered
+from studies.measurement.identify.descent import Found
 from studies.measurement.identify.diagnosis import contradictions, defects, drive_found, peaks
 from studies.measurement.identify.fit import fit
+from studies.measurement.identify.problem import chance_of
 from studies.measurement.identify.profiles import Profile
 from studies.measurement.identify.records import NoAnswer, Record
+from studies.measurement.identify.result import TOO_SMALL
 from studies.measurement.identify.soundness import unit_of
 from studies.measurement.identify.spectrum import harmonics
 from studies.physics.parameters import with_values
@@ -208,6 +211,42 @@ def test_without_impacts_the_linear_motion_is_the_answer(scene_of_eq1):
         fit(record, scene_of_eq1, ALL)
     held = with_values(scene_of_eq1, {"amplitude": amplitude, "decay_rate": 3.56})
     right(fit(record, held, ("free_period", "gap")), amplitude)
+
+
+def test_what_is_no_motion_of_a_beam_has_no_answer(scene_of_eq1):
+    """A hum beside a steady motion is no free mode; a random walk has no start."""
+    time, random = np.arange(4000) / 2000.0, np.random.default_rng(0)
+    steady, hum = (np.sin(2.0 * np.pi * f * time) for f in (23.7, 50.0))
+    for sentence, x in {
+        "a line at 50 Hz of .* does not decay: hum|cannot determine decay_rate": 1e-3 * steady + 2e-4 * hum,
+        "no motion like|repeats, but not as": np.cumsum(1e-5 * random.standard_normal(4000)),
+    }.items():
+        rows = np.column_stack([time, x + 1e-6 * random.standard_normal(4000)])
+        with pytest.raises(NoAnswer, match=sentence):
+            fit(Record(columns=("time_s", "x_m"), rows=rows), scene_of_eq1, ALL)
+
+
+def test_a_search_does_not_run_away_to_endless_oscillations(scene_of_eq1, settled):
+    """Free period and drive frequency stay within a factor of e^2 of where it begins."""
+    problem = fit(settled[0], scene_of_eq1, ALL).problem
+    for name in ("free_period", "frequency"):
+        step = np.eye(problem.start.size)[problem.names.index(name)]
+        assert np.all(np.isnan(problem.residuals(problem.start - 2.1 * step)))
+
+
+def test_residuals_that_repeat_with_the_orbit_contradict_a_fit(scene_of_eq1, settled):
+    """Many weak lines that no autocorrelation shows; noise alone is as likely as it says."""
+    found = fit(settled[0], scene_of_eq1, ALL)
+    pace = found.oscillator.driven.frequency / found.problem.prediction.period
+    random, times = np.random.default_rng(3), found.record.rows[:, 0]
+    noise = random.standard_normal(times.size)
+    lines = np.arange(9, 80)
+    phases = 2.0 * np.pi * (np.outer(pace * lines, times) + random.random((lines.size, 1)))
+    for part, likely in ((0.0, True), (0.08, False)):
+        residuals = noise + part * np.cos(phases).sum(axis=0)
+        fun = np.append(residuals, np.zeros(found.unknowns.size))
+        solved = Found(found.unknowns, fun, np.eye(1), 0.0)
+        assert (chance_of(found.problem, solved, False) > TOO_SMALL) == likely
 
 
 def test_units_and_a_drive_that_contradict_the_record_are_wrong_use(scene_of_eq1, settled):

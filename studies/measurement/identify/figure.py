@@ -18,9 +18,9 @@ CAPTION = (
     "Each record with its fit (left), residuals (middle), and the profile likelihood of the two parameters "
     "that trade off most (dashed: the 90 % interval), or the correlations of all (right)."
 )
-SHOWN, DEPTH, DARK = 6, 2.71, 0.6
+SHOWN, DEPTH, DARK, SMALL = 6, 2.71, 0.6, 5.5
 """Drive periods of a displacement that are shown; rise of chi^2 at the ends of a 90 % interval; correlation
-from which on its cell is dark."""
+from which on its cell is dark; size of its digits [pt]."""
 
 FITTED: plotting.Style = {"linestyle": "none", "marker": "_", "color": "black", "zorder": 5, "label": "fit"}
 DOTS: plotting.Style = {"linestyle": "none", "marker": ".", "markersize": 2, "rasterized": True}
@@ -74,11 +74,12 @@ def _trade(axis: Any, one: Fit, rows: Sequence[Profile]) -> None:
     if not rows:
         axis.imshow(one.correlations, vmin=-1.0, vmax=1.0, cmap="RdBu")
         names = [name.replace("_", "\n") for name in one.names]
-        axis.set_xticks(range(len(names)), names)
+        axis.set_xticks(range(len(names)), names, rotation=90)
         axis.set_yticks(range(len(names)), names)
         for (i, j), number in np.ndenumerate(one.correlations):
             colour = "white" if abs(number) > DARK else "black"
-            axis.text(j, i, f"{number:.2f}", ha="center", va="center", color=colour)
+            words = f"{number:.2f}".replace("-", "\u2212")
+            axis.text(j, i, words, ha="center", va="center", color=colour, fontsize=SMALL)
         return
     own = [row for row in rows if row.parameter == rows[0].parameter]
     other, known = axis.twinx(), parameters_of(one.oscillator)
