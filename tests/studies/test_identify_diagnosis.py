@@ -18,6 +18,7 @@ from studies.measurement.identify import figure
 from studies.measurement.identify.__main__ import answered
 from studies.measurement.identify.descent import Found
 from studies.measurement.identify.diagnosis import contradictions, defects, drive_found, peaks
+from studies.measurement.identify.fit import _best as best_of
 from studies.measurement.identify.fit import fit
 from studies.measurement.identify.problem import chance_of
 from studies.measurement.identify.profiles import Profile
@@ -213,17 +214,22 @@ def test_without_impacts_the_linear_motion_is_the_answer(scene_of_eq1):
     right(fit(record, held, ("free_period", "gap")), amplitude)
 
 
-def test_what_is_no_motion_of_a_beam_has_no_answer(scene_of_eq1):
-    """A hum beside a steady motion is no free mode; a random walk has no start."""
-    time, random = np.arange(4000) / 2000.0, np.random.default_rng(0)
-    steady, hum = (np.sin(2.0 * np.pi * f * time) for f in (23.7, 50.0))
-    for sentence, x in {
-        "a line at 50 Hz of .* does not decay: hum|cannot determine decay_rate": 1e-3 * steady + 2e-4 * hum,
-        "no motion like|repeats, but not as": np.cumsum(1e-5 * random.standard_normal(4000)),
+def test_a_hum_beside_a_steady_motion_is_no_free_mode(scene_of_eq1):
+    """Nor an impact where it is 9/4 of the drive: no start, or a fit that its residuals contradict."""
+    time, noise = np.arange(4000) / 2000.0, 1e-6 * np.random.default_rng(0).standard_normal(4000)
+    for frequency, sentence in {
+        23.7: "a line at 50 Hz of .* does not decay: hum|cannot determine decay_rate",
+        22.2: "repeats, but not as|no motion like|best values found, of unknown error",
     }.items():
-        rows = np.column_stack([time, x + 1e-6 * random.standard_normal(4000)])
+        x = 1e-3 * np.sin(2.0 * np.pi * frequency * time) + 2e-4 * np.sin(2.0 * np.pi * 50.0 * time)
         with pytest.raises(NoAnswer, match=sentence):
-            fit(Record(columns=("time_s", "x_m"), rows=rows), scene_of_eq1, ALL)
+            rows = np.column_stack([time, x + noise])
+            answered(fit(Record(columns=("time_s", "x_m"), rows=rows), scene_of_eq1, ALL))
+
+
+def test_without_a_start_there_is_no_answer():
+    with pytest.raises(NoAnswer, match="no motion like"):
+        best_of([], known=False)
 
 
 def test_a_search_does_not_run_away_to_endless_oscillations(scene_of_eq1, settled):
