@@ -138,23 +138,3 @@ POINTS: Mapping[str, Point] = MappingProxyType(
     | _points(_AFTER)
 )
 """What the letter says, in its order; a study that judges a point calls `run.verdict` with its key."""
-
-QUESTIONS: Mapping[str, tuple[str, tuple[str, ...]]] = MappingProxyType(
-    {
-        "hysteresis": (
-            "Why does the measured hysteresis differ from the map's?",
-            ("hysteresis", "noise", "shape"),
-        ),
-        "higher_modes": (
-            "What do higher modes do to restitution, delay and the square root?",
-            ("effective_impact", "soft_wall"),
-        ),
-        "two_parameters": ("Do energy loss and delay stand for the higher modes?", ("transitions",)),
-        "last_period": ("Why p10 at 23.40 Hz, where the map has p11?", ("last_period",)),
-        "period": (
-            "What do the six periods say of the free period in motion, and what would have told more?",
-            ("last_period", "identify"),
-        ),
-    }
-)
-"""The questions that the letter leaves open, and the studies that answer them (`run.answer`)."""

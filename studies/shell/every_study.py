@@ -59,7 +59,7 @@ OWN_OPTIONS = ("--all", "--fresh", "--json")
 def arguments_of(name: str, scene: Scene, given: Namespace, passed_on: Sequence[str]) -> list[str] | None:
     """Arguments of a study, None if it is stored; of another scene or source it forgets what it has begun."""
     study: Study = getattr(importlib.import_module(module_of(name)), name)
-    settings = {"quick": given.quick, **study.defaults(given.quick)}
+    settings = {"quick": given.quick, "style": given.style, **study.defaults(given.quick)}
     try:
         there = json.loads((Path(given.out) / name / "manifest.json").read_text(encoding="utf-8"))
         same = not given.fresh and there["fingerprint"] == fingerprint(scene.values(), settings)

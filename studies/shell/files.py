@@ -1,5 +1,4 @@
-"""Files of results: complete or absent, JSON without NaN, tables of typed rows, and where a result comes
-from.
+"""Files of results: complete or absent, JSON without NaN, and where a result comes from.
 
 The bytes go into a hidden file of the same folder, reach the disk, and then take the final name in one step:
 a reader, a crash or an interruption never sees half a file.
@@ -7,10 +6,8 @@ a reader, a crash or an interruption never sees half a file.
 
 from __future__ import annotations
 
-import csv
 import dataclasses
 import hashlib
-import io
 import json
 import math
 import os
@@ -18,7 +15,7 @@ import platform
 import re
 import subprocess
 import tempfile
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from functools import cache
 from importlib.metadata import PackageNotFoundError, requires, version
@@ -97,24 +94,6 @@ def plain(value: object) -> object:
 def json_text(value: object) -> str:
     """The value as JSON."""
     return json.dumps(plain(value), indent=2, allow_nan=False, ensure_ascii=False)
-
-
-def columns_of(kind: type, rows: Sequence[object]) -> list[str]:
-    """The names of the columns of a table whose rows, if there are any, are instances of one dataclass."""
-    if not dataclasses.is_dataclass(kind) or {type(row) for row in rows} - {kind}:
-        raise TypeError(f"a table needs rows of one dataclass, {kind.__name__}, not {set(map(type, rows))}")
-    return [entry.name for entry in dataclasses.fields(kind)]
-
-
-def csv_text(kind: type, rows: Sequence[object]) -> str:
-    """A table of rows, headings first; empty cells for None and not a number, JSON for lists and mappings."""
-    names, stream = columns_of(kind, rows), io.StringIO(newline="")
-    writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow(names)
-    for row in rows:
-        cells = [plain(getattr(row, name)) for name in names]
-        writer.writerow(json.dumps(cell) if isinstance(cell, list | dict) else cell for cell in cells)
-    return stream.getvalue()
 
 
 @cache

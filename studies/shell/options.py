@@ -27,6 +27,9 @@ Answer = Mapping[str, object]
 POSITIONAL = "positional"
 """Beside the words of an argument: it needs no name on the command line."""
 
+STYLES = ("paper", "slide")
+"""Forms of the figures (`studies.shell.plotting`)."""
+
 MOST_CELLS = 1_000_000
 """Bound on the cells of a study, and on a count on the command line. At 1 ms a cell, a million take a quarter
 of an hour, and their numbers fit into memory."""
@@ -117,6 +120,8 @@ def parser_of(command: str, account: str) -> Parser:
     cores = os.cpu_count() or 1
     runs("--quick", action="store_true", help="a small form of the study, for a first look")
     count = partial(BOUNDS[int].read, int)
+    words = "figures for a journal, or with larger letters for a slide of 16:9 (default: paper)"
+    runs("--style", choices=STYLES, default="paper", help=words)
     runs("--workers", type=count, default=cores, metavar="N", help="threads or processes (default: cores)")
     runs("--executor", default="", metavar="URL", help="threads (default), processes, dask://HOST")
     runs("--out", type=_folder, default="results", metavar="DIR", help="folder of all results")

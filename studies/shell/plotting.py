@@ -20,8 +20,9 @@ reads. The same data give the same bytes: neither format carries a date or a ver
 from __future__ import annotations
 
 import io
-from collections.abc import Callable, Iterable
-from contextlib import AbstractContextManager
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import AbstractContextManager, contextmanager
+from contextvars import ContextVar
 from functools import wraps
 from pathlib import Path
 from typing import Any, ParamSpec, TypeVar
@@ -41,7 +42,11 @@ COLUMN = 0.086
 PAGE = 0.178
 """Widths of a journal's column and page [m]."""
 
-DOTS_PER_INCH = 200
+SLIDE, LARGEST_SLIDE = 0.067, 0.1
+"""Heights of a slide of 16:9 [m], the least and the greatest: the smaller, the larger its letters. One that
+is shown a metre wide has letters of 24 mm to 16 mm."""
+
+DOTS_PER_INCH = {"paper": 200, "slide": 400}
 INCH = 0.0254
 
 PALETTE = ("#000000", "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#F0E442")
@@ -124,10 +129,29 @@ def in_house_style(draw: Callable[P, R]) -> Callable[P, R]:
     return styled
 
 
+_style: ContextVar[str] = ContextVar("style", default="paper")
+
+
+@contextmanager
+def style_of(name: str) -> Iterator[None]:
+    """Context in which figures are drawn for a journal, "paper", or in 16:9 with larger letters, "slide"."""
+    token = _style.set(name)
+    try:
+        yield
+    finally:
+        _style.reset(token)
+
+
 def new_figure(
     rows: int = 1, columns: int = 1, *, width: float = COLUMN, height: float = 0.060, **subplots: Any
 ) -> tuple[Figure, Any]:
-    """A figure of `width` by `height` [m] and its axes: one, or an array as from `Figure.subplots`."""
+    """A figure of `width` by `height` [m] and its axes: one, or an array as from `Figure.subplots`.
+
+    A slide has its own size; what needs much room on paper gets more there, too.
+    """
+    if _style.get() == "slide":
+        height = min(max(SLIDE, 0.7 * height, 0.4 * width), LARGEST_SLIDE)
+        width = height * 16.0 / 9.0
     with matplotlib.rc_context(STYLE):
         figure = Figure(figsize=(width / INCH, height / INCH), layout="constrained")
         FigureCanvasAgg(figure)
@@ -183,9 +207,9 @@ def label(axis: Axis, quantity: str, unit: str = "1") -> None:
     axis.set_label_text(quantity if unit == "1" else f"{quantity} ({unit})")
 
 
-def panel(axes: Axes, number: int, words: str = "") -> None:
+def panel(axes: Axes, number: int, words: str) -> None:
     """Letter of a panel, (a) for number 0, and what it shows."""
-    axes.set_title(f"({chr(ord('a') + number)}) {words}".rstrip(), loc="left")
+    axes.set_title(f"({chr(ord('a') + number)}) {words}", loc="left")
 
 
 def legend_below(figure: Figure, axes: Iterable[Axes], columns: int, **looks: Any) -> None:
@@ -225,7 +249,7 @@ def mark_letter(axis: Axis, value: float, *, words: str = "letter", along: float
 
 def save(figure: Figure, folder: Path, name: str) -> tuple[Path, Path]:
     """Write NAME.png and NAME.pdf into a folder; returns both paths."""
-    paths = (folder / f"{name}.png", folder / f"{name}.pdf")
+    paths, dots = (folder / f"{name}.png", folder / f"{name}.pdf"), DOTS_PER_INCH[_style.get()]
     without_traces: tuple[dict[str, None], ...] = (
         {"Software": None},
         {"Creator": None, "Producer": None, "CreationDate": None},
@@ -233,6 +257,6 @@ def save(figure: Figure, folder: Path, name: str) -> tuple[Path, Path]:
     with matplotlib.rc_context(STYLE):
         for path, metadata in zip(paths, without_traces, strict=True):
             stream = io.BytesIO()
-            figure.savefig(stream, format=path.suffix[1:], dpi=DOTS_PER_INCH, metadata=metadata)
+            figure.savefig(stream, format=path.suffix[1:], dpi=dots, metadata=metadata)
             write_atomically(path, stream.getvalue())
     return paths

@@ -32,6 +32,9 @@ DONE, WRONG_USE, FAILED_CELLS, INTERRUPTED = 0, 2, 3, 130
 TRACEBACK = "GRAZING_SPRING_TRACEBACK"
 
 FOLDER = Path(__file__).resolve().parent.parent
+RUN_TIMES = FOLDER / "shell" / "run_times.csv"
+"""The measured run times, the studies of each chapter in the order of their argument."""
+
 CHAPTERS = ("experiment", "spring", "methods", "measurement")
 TOOLS = ("report", "tour", "explore", "pictures")
 """Programs without results of a scene."""
@@ -56,10 +59,12 @@ def needs(what: str, packages: str) -> str:
 
 
 def chapter(name: str) -> dict[str, Path]:
-    """The studies of a chapter: name -> the file that runs."""
+    """The studies of a chapter in the order of the table of run times: name -> the file that runs."""
     found = {path.stem: path for path in (FOLDER / name).glob("[a-z]*.py")}
     found |= {path.parent.name: path for path in (FOLDER / name).glob("[a-z]*/__main__.py")}
-    return {one: found[one] for one in sorted(found) if STUDY.search(found[one].read_text("utf-8"))}
+    order = [line.partition(",")[0] for line in RUN_TIMES.read_text("utf-8").splitlines()]
+    known = sorted(found, key=lambda one: (order.index(one) if one in order else len(order), one))
+    return {one: found[one] for one in known if STUDY.search(found[one].read_text("utf-8"))}
 
 
 @cache
@@ -75,8 +80,8 @@ def names() -> list[str]:
 
 
 def studies() -> list[str]:
-    """Every study, the main one first."""
-    return sorted(set(names()) - set(TOOLS), key=lambda name: (name != MAIN, name))
+    """Every study, by chapter; the first is the main one."""
+    return [name for each in CHAPTERS for name in chapter(each)]
 
 
 def first_line(path: Path) -> str:
@@ -115,7 +120,7 @@ def account_of(name: str) -> str:
     return by_own_name(ast.get_docstring(ast.parse(programs()[name].read_text("utf-8"))) or "")
 
 
-def run_times(table: Path = FOLDER / "shell" / "run_times.csv") -> dict[str, tuple[float, float]]:
+def run_times(table: Path = RUN_TIMES) -> dict[str, tuple[float, float]]:
     """Run times [s] of each study in full and with --quick; 60 s and 10 s for a study not in the table.
 
     `python -m studies --all` measures them; the table was measured on two cores, with compiled kernels.

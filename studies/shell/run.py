@@ -3,7 +3,8 @@
     results/NAME/summary.json     what was found; NaN and infinity are null
                  *.npz, *.csv     arrays and tables
                  *.png, *.pdf     figures, drawn from what was stored
-                 manifest.json    versions, parameters with provenance, command, commit, wall time, captions
+                 columns.json     what each file and each column holds, with its unit
+                 manifest.json    versions, parameters with provenance, command, commit, wall time
 
 Everything for a person goes to standard error. What an interrupted study has stored until then stays.
 """
@@ -11,6 +12,7 @@ Everything for a person goes to standard error. What an interrupted study has st
 from __future__ import annotations
 
 import io
+import re
 import sys
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -30,11 +32,10 @@ from contact import ContactError
 from studies import letter
 from studies.physics.least_model import TRACE_EXCESS, least_modes
 from studies.physics.one_mode import doubts, with_restitution
+from studies.shell.columns import columns_of, csv_text
 from studies.shell.executors import pool_of, progress, say
 from studies.shell.files import (
     SCHEMA,
-    columns_of,
-    csv_text,
     fingerprint,
     git_state,
     json_text,
@@ -50,8 +51,18 @@ if TYPE_CHECKING:
 
 Verdict = Literal["agrees", "in part", "differs", "fitted", "not printed"]
 
+MOST_FINDINGS = 3
+
+NAMES = re.compile(r"\bp\d+|Eqs?\. \(\d\)|Figs?\. \d|[Mm]odes? \d+|\[\d+\]")
+"""Words with digits that are no numbers."""
+
 T = TypeVar("T")
 S = TypeVar("S")
+
+
+def numbers_in(sentence: str) -> list[str]:
+    """The numbers of a sentence; p10, Eq. (1), Fig. 2, mode 1 and note [11] are names."""
+    return re.findall(r"\d[\d.,]*(?:e[-+]?\d+)?", NAMES.sub("", sentence))
 
 
 @dataclass(kw_only=True)
@@ -66,6 +77,7 @@ class Run:
     quick: bool = False
     workers: int = 1
     executor: str = ""
+    style: str = "paper"
     options: Mapping[str, object] = field(default_factory=dict)
     warnings: Sequence[str] = ()
     files: list[str] = field(default_factory=list)
@@ -76,12 +88,13 @@ class Run:
 
     def __post_init__(self) -> None:
         require_writable(self.folder)
+        self._settings = {"quick": self.quick, "style": self.style, **self.options}
         self._begun, self._date = time.perf_counter(), datetime.now(UTC)
         # of the scene as it was given, before modes are chosen
-        self._fingerprint = fingerprint(self.scene.values(), {"quick": self.quick, **self.options})
-        self._captions: dict[str, str] = {}
+        self._fingerprint = fingerprint(self.scene.values(), self._settings)
+        self._holds: dict[str, dict[str, object]] = {}
         self._verdicts: dict[str, dict[str, object]] = {}
-        self._answers: dict[str, str] = {}
+        self._findings: list[str] = []
 
     # what a person sees
 
@@ -150,60 +163,72 @@ class Run:
 
     # what it leaves
 
-    def path(self, name: str) -> Path:
-        """The path of a file, or folder of files, that another library writes."""
+    def path(self, name: str, holds: str, **more: object) -> Path:
+        """The path of a file, or folder of files, that another library writes; `holds` says what is in it."""
         if Path(name).name != name:
             raise ValueError(f"a result needs a plain file name, not {name!r}")
         if name not in self.files:
             self.files.append(name)
+        self._holds[name] = {"holds": holds, **more}
         return make_folder(self.folder) / name
 
-    def text(self, name: str, text: str) -> Path:
+    def text(self, name: str, text: str, holds: str) -> Path:
         """A text file under its full name."""
-        return write_atomically(self.path(name), text.encode())
+        return write_atomically(self.path(name, holds), text.encode())
 
-    def json(self, name: str, value: object) -> Path:
+    def json(self, name: str, value: object, holds: str) -> Path:
         """NAME.json."""
-        return self.text(f"{name}.json", json_text(value) + "\n")
+        return self.text(f"{name}.json", json_text(value) + "\n", holds)
 
-    def arrays(self, name: str, **arrays: ArrayLike) -> Path:
-        """NAME.npz with these named arrays of numbers or texts."""
+    def arrays(self, name: str, holds: str, **arrays: ArrayLike) -> Path:
+        """NAME.npz with these named arrays of numbers or texts; `holds` says what each of them is."""
         stream = io.BytesIO()
         known = {key: np.asarray(value) for key, value in arrays.items()}
         for key, array in known.items():
             if array.dtype.hasobject:
                 raise TypeError(f"{key} in {name}.npz must be an array of numbers or texts, not of objects")
         np.savez_compressed(stream, **known)  # type: ignore[arg-type]
-        return write_atomically(self.path(f"{name}.npz"), stream.getvalue())
+        path = self.path(f"{name}.npz", holds, arrays={key: array.shape for key, array in known.items()})
+        return write_atomically(path, stream.getvalue())
 
     def table(
-        self, name: str, rows: Sequence[T], caption: str = "", *, of: type, show: Sequence[str] | None = None
+        self,
+        name: str,
+        rows: Sequence[T],
+        caption: str,
+        *,
+        of: type,
+        show: Sequence[str] | None = None,
+        words: Mapping[str, str] | None = None,
     ) -> Path:
-        """NAME.csv of rows of the dataclass `of`; on the terminal the columns `show` (all by default)."""
+        """NAME.csv of rows of the dataclass `of`; on the terminal the fields `show` (all by default).
+
+        `words` say what the fields of a row hold that does not say it itself (``studies.shell.columns``).
+        """
         from rich.console import Console
         from rich.table import Table
 
-        shown = list(columns_of(of, rows) if show is None else show)
-        if shown:
-            table = Table(title=caption or None, title_justify="left", box=None, pad_edge=False)
+        columns = columns_of(of, rows, words)
+        if shown := [one for one in columns if show is None or one.field in show]:
+            table = Table(title=caption, title_justify="left", box=None, pad_edge=False)
             for column in shown:
-                table.add_column(column, justify="right", overflow="fold")
+                table.add_column(column.name, justify="right", overflow="fold")
             for row in rows:
-                table.add_row(*(_cell(getattr(row, column)) for column in shown))
+                table.add_row(*(_cell(column.cell(row)) for column in shown))
             terminal = sys.stderr.isatty()
             Console(file=sys.stderr, width=None if terminal else 200, markup=False, highlight=False).print(
                 table
             )
-        self._captions[f"{name}.csv"] = caption
-        return self.text(f"{name}.csv", csv_text(of, rows))
+        about = [{"name": c.name, "heading": c.heading, "unit": c.unit, "note": c.note} for c in columns]
+        path = self.path(f"{name}.csv", caption, columns=about)
+        return write_atomically(path, csv_text(columns, rows).encode())
 
-    def figure(self, name: str, figure: Figure, caption: str = "") -> None:
+    def figure(self, name: str, figure: Figure, caption: str) -> None:
         """NAME.png and NAME.pdf; the caption is what the page writes below it."""
         from studies.shell.plotting import save  # matplotlib is slow to import
 
         for path in save(figure, make_folder(self.folder), name):
-            self.path(path.name)
-        self._captions[f"{name}.png"] = caption
+            self.path(path.name, caption)
 
     def failed(self, where: str, error: object, *, say: bool = True) -> None:
         """One failed cell: the study goes on, and ends with exit code 3."""
@@ -211,20 +236,22 @@ class Run:
         if say:
             self.say(self.failures[-1])
 
-    def verdict(self, point: str, verdict: Verdict, *, found: str, note: str = "") -> None:
+    def verdict(self, point: str, verdict: Verdict, *, found: str, note: str = "", figure: str = "") -> None:
         """What was found of a point of the letter (`letter.POINTS`), if the spring is the letter's.
 
         "fitted": the scene was calibrated to that number; "not printed": the letter gives none to compare.
+        `figure` is the name of the figure that shows it, by default the first of the study.
         """
         if point not in letter.POINTS or letter.POINTS[point].study != self.study:
             raise KeyError(f"{self.study} judges no point {point!r} of letter.POINTS")
-        self._verdicts |= {point: {"verdict": verdict, "found": found, "note": note}} if self.letters else {}
+        about = {"verdict": verdict, "found": found, "note": note, "figure": figure}
+        self._verdicts |= {point: about} if self.letters else {}
 
-    def answer(self, question: str, text: str) -> None:
-        """The answer, or a part of it, to a question of `letter.QUESTIONS`, if the spring is the letter's."""
-        if question not in letter.QUESTIONS or self.study not in letter.QUESTIONS[question][1]:
-            raise KeyError(f"{self.study} answers no question {question!r} of letter.QUESTIONS")
-        self._answers |= {question: text} if self.letters else {}
+    def finding(self, sentence: str) -> None:
+        """A sentence for the page on what came out, with one number at most; a study has three at most."""
+        if len(self._findings) == MOST_FINDINGS or len(numbers_in(sentence)) > 1:
+            raise ValueError(f"a study has {MOST_FINDINGS} findings of one number each, not: {sentence}")
+        self._findings.append(sentence)
 
     @cached_property
     def letters(self) -> bool:
@@ -239,7 +266,7 @@ class Run:
     def close(self, status: str, results: Mapping[str, object]) -> dict[str, object]:
         """Write summary.json and manifest.json; returns the summary."""
         self.closed = True
-        settings = {"quick": self.quick, "workers": self.workers, "executor": self.executor, **self.options}
+        settings = {**self._settings, "workers": self.workers, "executor": self.executor}
         common = {
             "schema": SCHEMA,
             "study": self.study,
@@ -255,28 +282,28 @@ class Run:
             "failures": self.failures,
             "failed_cells": len(self.failures),
             "verdicts": self._verdicts,
-            "answers": self._answers,
+            "findings": self._findings,
         }
         if taken := sorted(summary.keys() & results.keys()):
             raise ValueError(f"{self.study} returns {', '.join(taken)}, keys that every summary has already")
         summary |= results
-        self.json("summary", summary)
-        self.path("manifest.json")
-        self.json(
-            "manifest",
-            {
-                **common,
-                "command": self.command,
-                "parameters": self.scene.values(),
-                "versions": versions(),
-                "git": git_state(),
-                "fingerprint": self._fingerprint,
-                "begun": self._date.isoformat(timespec="seconds"),
-                "wall_time_s": wall_time,
-                "files": sorted(self.files),
-                "captions": self._captions,
-            },
-        )
+        if status != "interrupted" and not self.failures and "rows" not in results:
+            raise ValueError(f"{self.study} returns no rows")
+        self.json("summary", summary, "What was found.")
+        self.path("manifest.json", "The command, scene, versions and commit of these results.")
+        self.json("columns", self._holds, "What each file and each column holds.")
+        manifest = {
+            **common,
+            "command": self.command,
+            "parameters": self.scene.values(),
+            "versions": versions(),
+            "git": git_state(),
+            "fingerprint": self._fingerprint,
+            "begun": self._date.isoformat(timespec="seconds"),
+            "wall_time_s": wall_time,
+            "files": self.files,
+        }
+        self.json("manifest", manifest, "The command, scene, versions and commit of these results.")
         return {**summary, "folder": self.folder, "wall_time_s": wall_time}
 
 
@@ -294,6 +321,4 @@ def _cell(value: object) -> str:
         return "-"
     if isinstance(value, float | np.floating):
         return f"{value:.5g}"
-    if isinstance(value, tuple):
-        return " ".join(map(_cell, value))
     return {True: "yes", False: "no"}[value] if isinstance(value, bool) else str(value)

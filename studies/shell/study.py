@@ -34,7 +34,7 @@ from contact import ContactError
 from studies.shell import programs
 from studies.shell.executors import duration
 from studies.shell.files import SCHEMA
-from studies.shell.options import add_options, parser_of
+from studies.shell.options import STYLES, add_options, parser_of
 from studies.shell.programs import DONE, FAILED_CELLS, INTERRUPTED, as_program, perform, run_time_of, tell
 from studies.shell.run import Run
 from studies.shell.scene import Scene, read_scene
@@ -116,6 +116,7 @@ class Study:
             quick=given["quick"],
             workers=given["workers"],
             executor=given["executor"],
+            style=given["style"],
             options=chosen,
             warnings=doubtful,
             command=shlex.join([*command.split(), *argv]),
@@ -147,7 +148,8 @@ class Study:
                 asked = self.at(run.scene, options) if self.at else ()
                 scene = run.choose_modes(run.scene, self.needs, *asked) if self.needs else run.scene
                 scene = run.describe_one_mode(scene)
-                results = self.function(scene, run, **options)
+                with _drawn_as(run.style):
+                    results = self.function(scene, run, **options)
         except (KeyboardInterrupt, Exception) as error:
             if _interrupted(error):
                 return INTERRUPTED, "interrupted", {}
@@ -166,6 +168,15 @@ def read_told(name: str, overrides: Sequence[str]) -> tuple[Scene, list[str]]:
         warnings.simplefilter("always", SuspiciousValue)
         scene = read_scene(name, overrides)
     return scene, list(dict.fromkeys(str(w.message) for w in found if w.category is SuspiciousValue))
+
+
+def _drawn_as(style: str) -> contextlib.AbstractContextManager[None]:
+    """Context in which the figures have this style; matplotlib, slow to import, is left out for the usual."""
+    if style == STYLES[0]:
+        return contextlib.nullcontext()
+    from studies.shell.plotting import style_of
+
+    return style_of(style)
 
 
 def _interrupted(error: BaseException | None) -> bool:

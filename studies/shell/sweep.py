@@ -98,7 +98,7 @@ def sweep(
     ValueError
         If other settings are stored in the folder.
     """
-    folder = run.path(name)
+    folder = run.path(name, "The finished columns, from which an interrupted run goes on.")
     _begin(folder, {"columns": len(arguments), "source": source(), **settings}, fresh)
     stored = (_read(_path(folder, number)) for number in range(len(arguments)))
     columns = {number: column for number, column in enumerate(stored) if column is not None}
