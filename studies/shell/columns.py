@@ -4,9 +4,9 @@ A row is a frozen dataclass. A field says what it holds, and its unit, in its ty
 
     delay_s: Annotated[float, "time delay [s]; none where mode 1 does not come back"]
 
-What stands before the bracket is the heading on the page; a note may follow after a semicolon. A pure number has no
-bracket. The names in `USUAL` need no words. In the file a column has the name of its field, and behind it
-the unit: `approach` in m/s is `approach_m_per_s`. A mapping becomes a column for each of its keys.
+What stands before the bracket is the heading on the page; a note may follow after a semicolon. A pure number
+has no bracket. The names in `USUAL` need no words. In the file a column has the name of its field, and behind
+it the unit: `approach` in m/s is `approach_m_per_s`. A mapping becomes a column for each of its keys.
 """
 
 from __future__ import annotations
@@ -108,7 +108,7 @@ SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def written(value: float, digits: int = 4) -> str:
-    """A number for a person, on a page or in a figure: 0.0119, −6.27 × 10⁻⁴; a whole one has all its digits."""
+    """A number for a person, on a page or in a figure: 0.0119, −6.27 × 10⁻⁴; whole ones in all digits."""
     if not math.isfinite(value):
         return "–" if math.isnan(value) else "∞" if value > 0.0 else "−∞"
     if value == 0.0 or (float(value).is_integer() and abs(value) < 1e6):
