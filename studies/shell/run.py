@@ -21,8 +21,9 @@ from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from functools import cached_property, partial
+from operator import attrgetter
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal, TypeVar
+from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -201,7 +202,7 @@ class Run:
         show: Sequence[str] | None = None,
         words: Mapping[str, str] | None = None,
     ) -> Path:
-        """NAME.csv of rows of the dataclass `of`; on the terminal the fields `show` (all by default).
+        """NAME.csv of rows of the dataclass `of`; on the terminal the fields and properties `show`.
 
         `words` say what the fields of a row hold that does not say it itself (``studies.shell.columns``).
         """
@@ -209,12 +210,16 @@ class Run:
         from rich.table import Table
 
         columns = columns_of(of, rows, words)
-        if shown := [one for one in columns if show is None or one.field in show]:
+        shown = list[tuple[str, Callable[[Any], object]]]()
+        for name in dict.fromkeys([one.field for one in columns] if show is None else show):
+            own = [(one.name, one.cell) for one in columns if one.field == name]
+            shown += own or [(name, attrgetter(name))]  # a property is text for a person
+        if shown:
             table = Table(title=caption, title_justify="left", box=None, pad_edge=False)
-            for column in shown:
-                table.add_column(column.name, justify="right", overflow="fold")
+            for heading, _ in shown:
+                table.add_column(heading, justify="right", overflow="fold")
             for row in rows:
-                table.add_row(*(_cell(column.cell(row)) for column in shown))
+                table.add_row(*(_cell(cell(row)) for _, cell in shown))
             terminal = sys.stderr.isatty()
             Console(file=sys.stderr, width=None if terminal else 200, markup=False, highlight=False).print(
                 table
