@@ -248,9 +248,10 @@ def write_film(
 
     One picture is drawn after the other, so that memory does not grow with the film.
     """
+    from matplotlib.font_manager import findfont
     from PIL import Image, ImageDraw, ImageFont
 
-    font = ImageFont.load_default(size=18)
+    font = ImageFont.truetype(findfont("DejaVu Sans"), 16)
 
     def framed(chosen: Iterable[int]) -> Iterator[Picture]:
         for number in chosen:
@@ -258,7 +259,8 @@ def write_film(
             image = Image.fromarray(np.concatenate(parts))
             pen = ImageDraw.Draw(image)
             for row, line in enumerate(moments[number].lines):
-                colour = TEXT[0] if row == 0 else TOUCHED if moments[number].touched else TEXT[1]
+                last = row == len(moments[number].lines) - 1
+                colour = TOUCHED if last and moments[number].touched else TEXT[min(row, 1)]
                 pen.text((12, 8 + 24 * row), line, fill=colour, font=font)
             yield np.asarray(image, dtype=np.uint8)
 

@@ -34,7 +34,7 @@ from beam import Modes, SpringMesh, write_frames
 from contact import ImpactKind, ImpactOscillator, State, simulate
 from contact.orbits import Settled
 from studies.experiment.time_trace.model import Trace, touching
-from studies.shell.columns import written
+from studies.shell.columns import minus
 from studies.shell.film import (
     DRIVE,
     RATE,
@@ -81,13 +81,13 @@ def film(
     scenery = Scenery.of(modes, ball_radius=radius, gap=gap, swing=swing)
     drawn, magnification = drawn_shapes(scenery.mesh, modes, orbit.coordinates)
     true, _ = drawn_shapes(scenery.mesh, modes, orbit.coordinates, 1.0)
-    enlarged = f"; higher modes are drawn {magnification:g} times larger" if magnification > 1.0 else ""
+    enlarged = [f"higher modes are drawn {magnification:g} times larger"] if magnification > 1.0 else []
     moments = [
         Moment(
             points=points,
             base=orbit.base[i] * DRIVE,
             touched=bool(orbit.touched[i]),
-            lines=(words + enlarged, *lines_of(orbit, i)),
+            lines=[words, *enlarged, *lines_of(orbit, i)],
         )
         for i, points in enumerate(drawn)
     ]
@@ -116,13 +116,9 @@ def film(
 def lines_of(orbit: FilmedOrbit, i: int) -> tuple[str, str]:
     """What is written above a frame: how slow it is shown, time and tip."""
     factor = float(f"{orbit.slowed[i]:.2g}")
-    cue = ": slower near the impact" if orbit.slowed[i] > CUE * orbit.slowed.min() else ""
-    place = (
-        "the ball touches the plate"
-        if orbit.touched[i]
-        else f"the ball is at {written(1e3 * orbit.tip[i], 3)} mm"
-    )
-    return f"slow motion: {factor:.0f} times slower{cue}", f"{1e3 * orbit.time[i]:.2f} ms: {place}"
+    cue = ", near the impact" if orbit.slowed[i] > CUE * orbit.slowed.min() else ""
+    place = "touches the plate" if orbit.touched[i] else f"is at {minus(f'{1e3 * orbit.tip[i]:.2f}')} mm"
+    return f"slow motion: {factor:g} times slower{cue}", f"at {1e3 * orbit.time[i]:.2f} ms the ball {place}"
 
 
 def strip(orbit: FilmedOrbit, trace: Trace, gap: float) -> Callable[[int], Picture]:
