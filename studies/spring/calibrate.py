@@ -11,23 +11,31 @@ Writes:  keys.csv (before and after), calibrated.toml, a scene that every study 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Annotated
 
 from studies.physics.calibration import Targets, calibrate_all, collision_at
+from studies.shell.columns import written
 from studies.shell.scene import Scene, beam_at, harmonic
+from studies.shell.scene.values import KEYS
 from studies.shell.study import Run, study
 
-KEYS = ("spring.thickness_m", "spring.tape_loss_factor", "stop.gap_m", "tip.mass_kg")
+FITTED = ("spring.thickness_m", "spring.tape_loss_factor", "stop.gap_m", "tip.mass_kg")
+
+SMALL = 1e-3
+"""Relative change of a key by the fit that is none."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Fitted:
-    """One key of the scene, in its unit."""
+    """One key of the scene."""
 
-    key: str
-    before: float
-    after: float
+    key: Annotated[str, "key of the scene"]
+    unit: Annotated[str, "unit"]
+    before: Annotated[float, "before the fit"]
+    after: Annotated[float, "after the fit"]
 
 
 @study(needs={"frequency 1": 1e-5, "kick": 0.002})
@@ -35,16 +43,28 @@ def calibrate(scene: Scene, run: Run) -> Mapping[str, object]:
     """Fit, report and write the scene."""
     targets = Targets.of(harmonic(scene))
     fitted = calibrate_all(scene, targets)
-    rows = [Fitted(key=key, before=scene.number(key), after=fitted.number(key)) for key in KEYS]
-    run.table("keys", rows, "Keys before and after the fit.", of=Fitted)
-    run.text("calibrated.toml", fitted.dump())
+    rows = [
+        Fitted(key=name, unit=KEYS[name].unit, before=scene.number(name), after=fitted.number(name))
+        for name in FITTED
+    ]
+    run.table("keys", rows, "Keys of the scene before and after the fit.", of=Fitted)
+    run.text("calibrated.toml", fitted.dump(), "The scene with the fitted keys, for --scene.")
     collision = collision_at(fitted, targets.frequency_hz, targets.excess)
     amplitude = beam_at(fitted, targets.frequency_hz).grazing_amplitude()
     run.verdict(
         "drive_amplitude", "fitted", found=f"{1e3 * amplitude:.3f} mm at grazing, {targets.frequency_hz:g} Hz"
     )
+    change = max(abs(row.after / row.before - 1.0) if row.before else math.inf for row in rows)
+    if change < SMALL:
+        run.finding(
+            "The scene meets the four numbers already: the fit changes no key by more than a thousandth."
+        )
+    else:
+        run.finding("The fit changes the scene: take calibrated.toml as the scene of the other studies.")
+    run.finding(f"The ball with its mount weighs {written(1e3 * fitted.tip.mass_kg, 3)} g after the fit.")
+    run.finding(f"The gap that gives the drive amplitude is {written(1e3 * fitted.stop.gap_m, 3)} mm.")
     return {
-        "keys": {row.key: row.after for row in rows},
+        "rows": rows,
         "kick": collision.kick,
         "restitution": collision.restitution,
         "delay_s": collision.delay,

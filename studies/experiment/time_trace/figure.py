@@ -58,6 +58,7 @@ def _collision(axes: Sequence[Axes], near: CloseUp) -> None:
         axes[1].plot(micro, near.force, color=plotting.VERMILION, linewidth=1.0, label="contact force")
     else:
         axes[1].text(0.5, 0.5, "an impact law\nhas no force", transform=axes[1].transAxes, ha="center")
+        axes[1].set_yticks([])
     for axis in axes:
         for begin, end in near.spans:
             axis.axvspan(1e6 * begin, 1e6 * end, color="0.9", zorder=0, linewidth=0, label="in contact")

@@ -66,6 +66,10 @@ def judge(run: Run, readings: Mapping[Reading, ReadingRow]) -> None:
         f"a plain strip of the same period has it at {plain.ratio_twist:.1f} times; in that of "
         f'"{TITLES[least]}" the ball turns least, {turn:.2f} of this.',
     )
+    run.finding(
+        f'Of the U shapes, "{TITLES[highest]}" has its first twist mode highest, at {twist:.1f} times the '
+        "frequency of the first bending mode."
+    )
 
 
 def compare_plate(scene: Scene, run: Run) -> list[OrbitEnds]:
@@ -76,20 +80,17 @@ def compare_plate(scene: Scene, run: Run) -> list[OrbitEnds]:
     beam, plates = model_of(scene), plates_of(scene, COARSE if run.quick else FINE)
     springs, frequencies = models_of(plates, beam), scene.drive.frequencies_hz
     orbits = orbit_rows(scene, run, springs, frequencies[:: 2 if run.quick else 1])
-    kept = (
-        f"Ends of the orbits on the way down, by plates of {MODES} modes and the beam with {beam.n_modes}. "
-        "The main job keeps as few modes as its accuracy of 7 % allows."
-    )
-    run.table("plate_ends", orbits, kept, of=OrbitEnds)
-    same = all(row.same_period for row in orbits)
-    words = [f"As a plate the spring {'keeps every' if same else 'changes a'} period that is born."]
     known = [row for row in orbits if row.factors]
+    caption = f"Where the orbits end, by plates of {MODES} modes and by the beam with {beam.n_modes}."
+    if doubtful := [f"{row.frequency_hz:.2f}" for row in known if min(row.factors) < 0.0]:
+        caption += f" Plates and beam differ in the sign of the end at {', '.join(doubtful)} Hz."
+    run.table("plate_ends", orbits, caption, of=OrbitEnds)
+    kept = "keeps every period" if all(row.same_period for row in orbits) else "changes a period"
+    told = f"As a plate the spring {kept} that is born"
     if factors := [f for row in known if min(row.factors) > 0.0 for f in row.factors]:
         most = max(*factors, *(1.0 / factor for factor in factors))
-        words.append(f"Beam theory moves the ends of the orbits by a factor of up to {most:.1f}.")
-    if doubtful := [row for row in known if min(row.factors) < 0.0]:
-        words.append(f"At {doubtful[0].frequency_hz:.2f} Hz plates and beam differ in the sign of the end.")
-    run.answer("hysteresis", " ".join(words))
+        told += f"; the ends of the orbits move by a factor of up to {most:.1f}"
+    run.finding(f"{told}.")
     return orbits
 
 
@@ -100,6 +101,16 @@ def finite_amplitude(scene: Scene, run: Run) -> list[Survival]:
     springs, gaps = springs_of(scene, run.quick)
     found = run.map(partial(survivals, scene, gaps), springs, "springs")
     rows = [row for part in found for row in part]
-    run.table("springs", rows, "Springs by reading, radius, gap and ball; born period at 1e-3.", of=Survival)
+    shown = ("reading", "bend_radius_m", "gap_m", "tip_mass_kg", "kappa", "survive")
+    run.table("springs", rows, "Springs by shape, bend radius, gap and ball.", of=Survival, show=shown)
     run.figure("finite_amplitude", figure.draw_survival(scene, rows), figure.SURVIVAL)
+    own = (scene.spring.bend_radius_m, scene.stop.gap_m, scene.tip.mass_kg)
+    folded = (row for row in rows if row.reading == TITLES["folded"])
+    row = next(row for row in folded if (row.bend_radius_m, row.gap_m, row.tip_mass_kg) == own)
+    bends = (
+        f"Folded with the scene's bend, the strip {'softens' if row.kappa < 0.0 else 'stiffens'} as it swings"
+    )
+    run.finding(
+        f"{bends} and keeps {row.survive or 'none'} of the letter's periods." if run.letters else f"{bends}."
+    )
     return rows

@@ -18,11 +18,11 @@ terms leave out is the difference to the frame.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import product
-from typing import TypeVar
+from typing import Annotated, TypeVar
 
 import numpy as np
 from scipy.optimize import newton
@@ -32,12 +32,13 @@ from contact import NonlinearMode
 from contact.orbits import born_period
 from studies.physics.calibration import calibrate_thickness
 from studies.shell.scene import Scene, harmonic, nonlinear_mode_at, periods_of, spring_of
+from studies.spring.shape.shapes import TITLES, Reading
 
 Answer = TypeVar("Answer")
-Key = tuple[str, float, float]
+Key = tuple[Reading, float, float]
 """A spring of the map: its reading, bend radius [m] and ball [kg]."""
 
-LEAVES = ("side_by_side", "plain")
+LEAVES: tuple[Reading, ...] = ("side_by_side", "plain")
 """Readings that bend as one leaf, whatever the radius of the bend."""
 RADII = (4e-3, 5.5e-3, 7.5e-3, 10e-3, 15e-3, 20e-3, 25e-3, 30e-3, 40e-3)
 GAPS, BALLS = (4e-3, 7e-3, 15e-3, 20e-3), (0.0, 4e-3, 8e-3)
@@ -56,23 +57,20 @@ STRAIGHT_ELEMENTS, ARC_ELEMENTS = 12, 24
 
 @dataclass(frozen=True, kw_only=True)
 class Survival:
-    """One spring; lists go with the scene's drive frequencies. Born period 0: not settled; nothing: no motion
-    that grazes, or one whose deviations do not turn, as next to a turning point of the response.
+    """One spring; L is the first straight run, with legs side by side a leg and what the bend adds to it."""
 
-    L = `length_m` is the first straight run; with legs side by side it is a leg and the straight length
-    equivalent to the bend. `survive` counts the letter's periods that are born both at 2.5e-4 and, as
-    `born_period`, at 1e-3.
-    """
-
-    reading: str
-    bend_radius_m: float
-    gap_m: float
-    tip_mass_kg: float
-    length_m: float
-    kappa: float
-    effective_period_s: tuple[float | None, ...]
-    born_period: tuple[int | None, ...]
-    survive: int
+    reading: Annotated[str, "shape"]
+    bend_radius_m: Annotated[float, "bend radius [m]"]
+    gap_m: Annotated[float, "gap [m]"]
+    tip_mass_kg: Annotated[float, "ball and mount [kg]"]
+    length_m: Annotated[float, "length L [m]"]
+    kappa: Annotated[float, "κ; the free frequency changes by κ (A/L)² at an amplitude A"]
+    effective_period_s: Annotated[
+        Mapping[str, float | None],
+        "effective period [s]; none where no small deviation returns after a period",
+    ]
+    born_period: Annotated[Mapping[str, int | None], "period at the excess 0.001; 0: not settled"]
+    survive: Annotated[int, "periods as the letter saw them, at the excesses 0.00025 and 0.001"]
 
 
 def reading_of(scene: Scene, reading: str, radius: float, ball: float) -> Scene:
@@ -151,17 +149,18 @@ def survivals(scene: Scene, gaps: Sequence[float], spring: Key) -> list[Survival
             for excess in EXCESSES
         )
         wanted = [letter.get(mode.frequency) for mode in modes]
+        places = [f"at_{mode.frequency:g}_Hz" for mode in modes]
         rows.append(
             Survival(
-                reading=reading,
+                reading=TITLES[reading],
                 bend_radius_m=radius,
                 gap_m=gap,
                 tip_mass_kg=ball,
                 length_m=backbone.length,
                 kappa=backbone.kappa,
-                effective_period_s=tuple(map(effective, modes)),
-                born_period=born,
-                survive=sum(a == b == c for a, b, c in zip(wanted, low, born, strict=True)),
+                effective_period_s=dict(zip(places, map(effective, modes), strict=True)),
+                born_period=dict(zip(places, born, strict=True)),
+                survive=sum(a == b == c is not None for a, b, c in zip(wanted, low, born, strict=True)),
             )
         )
     return rows

@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
+from typing import Annotated
 
 import numpy as np
 import skfem as sk
@@ -38,17 +39,14 @@ PLATES = ("point", "seat")
 
 @dataclass(frozen=True, kw_only=True)
 class OrbitEnds:
-    """The orbit just above grazing, and the excess [1] at which it ends on the way down, for each spring.
-
-    `period` is the period of the beam's orbit; `same_period` says whether all springs have it.
-    """
+    """The orbit just above grazing, and where it ends on the way down."""
 
     frequency_hz: float
-    period: int | None
-    same_period: bool
-    beam: float | None = None
-    point: float | None = None
-    seat: float | None = None
+    period: Annotated[int | None, "period of the orbit of the beam"]
+    same_period: Annotated[bool, "the plates have the same period"]
+    beam: Annotated[float | None, "end of the orbit when the drive is lowered, F/F_g − 1, beam"] = None
+    point: Annotated[float | None, "end, plate with the ball on a point"] = None
+    seat: Annotated[float | None, "end, plate with the ball on a rigid seat"] = None
 
     @property
     def factors(self) -> list[float]:

@@ -28,7 +28,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
 from scipy.optimize import brentq
@@ -215,24 +215,19 @@ def shapes_of(scene: Scene) -> dict[Reading, Shape]:
 
 @dataclass(frozen=True, kw_only=True)
 class ReadingRow:
-    """A reading of "U shaped", brought to the free period of the scene; tip values [kg^(-1/2)].
+    """A reading of "U shaped", brought to the free period of the scene."""
 
-    Attributes
-    ----------
-    ratio_twist : first twist over first bending frequency.
-    tip_value_twist_off_line : with ball and contact `OFF_LINE` off the plane of symmetry.
-    turn_of_twist : theta of the ball in the twist mode [kg^(-1/2) m^(-1)].
-    """
-
-    reading: str
-    thickness_m: float
-    flange_m: float
-    first_bending_hz: float
-    first_twist_hz: float
-    ratio_twist: float
-    tip_value_bending: float
-    tip_value_twist_off_line: float
-    turn_of_twist: float
+    reading: Annotated[str, "shape"]
+    thickness_m: Annotated[float, "thickness of the sheet [m]"]
+    flange_m: Annotated[float, "width of the flanges [m]; 0 without flanges"]
+    first_bending_hz: Annotated[float, "first bending mode [Hz]"]
+    first_twist_hz: Annotated[float, "first twist mode [Hz]"]
+    ratio_twist: Annotated[float, "first twist over first bending frequency"]
+    tip_value_bending: Annotated[float, "tip value of the bending mode [kg^(-1/2)]"]
+    tip_value_twist_off_line: Annotated[
+        float, "tip value of the twist mode [kg^(-1/2)]; with the ball 0.5 mm off the plane of symmetry"
+    ]
+    turn_of_twist: Annotated[float, "turn of the ball in the twist mode [kg^(-1/2) m^(-1)]"]
 
 
 def reading_row(shape: Shape) -> ReadingRow:
@@ -243,7 +238,7 @@ def reading_row(shape: Shape) -> ReadingRow:
     off = spatial_modes(shape.spring(OFF_LINE), MODES)
     near = np.abs(off.frequencies_hz / f[twist] - 1.0) < 0.1  # mixed, it may be named bending
     return ReadingRow(
-        reading=shape.reading,
+        reading=TITLES[shape.reading],
         thickness_m=shape.thickness,
         flange_m=shape.flange,
         first_bending_hz=float(f[bending]),
