@@ -2,14 +2,13 @@
 
     scenery = Scenery.of(modes, ball_radius=2.5e-3, gap=0.0119, swing=0.013)
     with stage_of(scenery) as stage:
-        pictures = [stage(moment) for moment in moments]
-    write_gif(run.path("motion.gif"), pictures, rate=20.0, samples=pictures[:1])
+        write_film(stage, moments, run.path("motion.gif", "The motion."))
 
-`Moment` says where everything is: displacements of the points of the strip, of the ball and of the base, and
-whether the plate is touched. pyvista draws off the screen where that works. Without the libraries of OpenGL
-that ends in a segmentation fault which no program can catch, so that it is tried once in a process of its
-own; where it does not work matplotlib draws the spring in its plane, and one sentence names the packages
-that are missing.
+`Moment` says where everything is: displacements of the points of the strip, of the ball and of the base,
+whether the plate is touched, and what is written above. pyvista draws off the screen where that works.
+Without the libraries of OpenGL that ends in a segmentation fault which no program can catch, so that it is
+tried once in a process of its own; where it does not work matplotlib draws the spring in its plane, and one
+sentence names the packages that are missing.
 """
 
 from __future__ import annotations
@@ -31,7 +30,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from beam import BALL, LAYER, STRIP, Modes, SpringMesh, solid_spring
+from beam import BALL, BRASS, LAYER, STRIP, Material, Modes, SpringMesh, solid_spring
 from studies.shell.executors import say
 from studies.shell.files import write_atomically
 
@@ -54,6 +53,9 @@ PATIENCE = 120.0
 WIDTH, HEIGHT = 880, 400
 """Of a picture, in points; both even, as video wants them."""
 
+RATE = 20.0
+"""Frames a second: gif keeps time in hundredths of a second."""
+
 MOST_FRAMES = 10_000
 """Of a film: eight minutes at 20 a second, and half a gigabyte of drawn points."""
 
@@ -69,35 +71,51 @@ DRIVE = np.array([0.0, 1.0, 0.0])
 TOWARDS_VIEWER = np.array([0.20, 0.30, 0.93])
 """Across the strip, a little from the side of the ball, which a wide strip would hide."""
 
-COLOURS = {STRIP: "#D0A62B", LAYER: "#4A4A4A", BALL: "#E9EDF2"}
+COLOURS = {LAYER: "#4A4A4A", BALL: "#E9EDF2"}
 PLATE, TOUCHED = "#8C9AA8", "#FF7A1A"
+"""The plate, and its edges and all marks while it is touched."""
+TEXT = ("black", "#5A5A5A")
+"""The first line of text, and the others."""
+
+
+def metal(material: Material) -> str:
+    """The colour of a strip: brass where modulus and density are within a tenth of it, or else steel."""
+    same = (getattr(material, name) / getattr(BRASS, name) for name in ("youngs_modulus", "density"))
+    return "#D0A62B" if all(abs(ratio - 1.0) < 0.1 for ratio in same) else "#68747F"
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Moment:
     """Displacements of the points of the mesh relative to the base, shape (n_points, 3), and of the base
-    [m]."""
+    [m]; lines of text above."""
 
     points: Array
     base: Array
     touched: bool = False
+    lines: Sequence[str] = ()
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Scenery:
     """What is drawn: the solid spring at rest, the plate (None without one), and what holds everything.
 
-    `plate` and `room` are boxes, the lowest and the highest corner, shape (2, 3) [m].
+    `plate` and `room` are boxes, the lowest and the highest corner, shape (2, 3) [m]; `strip` is a colour.
     """
 
     mesh: SpringMesh
     plate: Array | None
     room: Array
+    strip: str
+
+    def placed(self, moment: Moment) -> Array:
+        """The points of the mesh at a moment, shape (n_points, 3) [m]."""
+        points: Array = self.mesh.points + moment.points + moment.base
+        return points
 
     @staticmethod
     def of(modes: Modes, *, ball_radius: float, swing: float, gap: float | None = None) -> Scenery:
         """The scenery of a spring that swings by `swing` [m], with a plate at `gap` [m] from the ball."""
-        mesh = solid_spring(modes, ball_radius=ball_radius)
+        mesh, spring = solid_spring(modes, ball_radius=ball_radius), modes.discretization.spring
         rows = int(np.sum(mesh.part == STRIP))
         if rows < ROWS:
             mesh = solid_spring(modes, ball_radius=ball_radius, points_per_element=-(-ROWS // rows))
@@ -105,13 +123,13 @@ class Scenery:
         if gap is not None:
             ball, half = mesh.points[np.unique(mesh.triangles)].mean(axis=0), 2.0 * ball_radius
             plate = ball + (ball_radius + gap) * DRIVE + np.array([(-half, 0.0, -half), (half, WALL, half)])
-            spring = modes.discretization.spring
             beside = ball[:2] - spring.centreline.points(spring.tip_at)[:2]
             if abs(beside[0]) > abs(beside[1]):  # a ball beyond the end: the strip passes the plate
                 plate[:, 0] += math.copysign(half - 0.75 * ball_radius, beside[0])
             held.append(plate)
         cloud = np.concatenate(held)
-        return Scenery(mesh=mesh, plate=plate, room=np.array([cloud.min(axis=0), cloud.max(axis=0)]))
+        room, strip = np.array([cloud.min(axis=0), cloud.max(axis=0)]), metal(spring.sections[0].material)
+        return Scenery(mesh=mesh, plate=plate, room=room, strip=strip)
 
 
 Stage = Callable[[Moment], Picture]
@@ -159,13 +177,13 @@ def _plotter(scenery: Scenery) -> Iterator[Stage]:
     plotter: Any = pyvista.Plotter(off_screen=True, window_size=[WIDTH, HEIGHT])
     plotter.set_background("white")
     grid = mesh.grid(mesh.points.copy())
-    colours = np.array([pyvista.Color(COLOURS[part]).int_rgb for part in mesh.part.tolist()], dtype=np.uint8)
-    grid.cell_data["colour"] = colours
+    colours = {part: pyvista.Color(one).int_rgb for part, one in {**COLOURS, STRIP: scenery.strip}.items()}
+    grid.cell_data["colour"] = np.array([colours[part] for part in mesh.part.tolist()], dtype=np.uint8)
     plotter.add_mesh(grid, scalars="colour", rgb=True, ambient=0.4, diffuse=0.6)
     plate = None
     if scenery.plate is not None:
         box = pyvista.Box(scenery.plate.T.ravel())
-        plate = plotter.add_mesh(box, color=PLATE, ambient=0.4, diffuse=0.6)
+        plate = plotter.add_mesh(box, color=PLATE, edge_color=TOUCHED, line_width=5, ambient=0.4, diffuse=0.6)
     camera, centre, reach = plotter.camera, scenery.room.mean(axis=0), np.ptp(scenery.room, axis=0)
     camera.position, camera.focal_point = tuple(centre + TOWARDS_VIEWER), tuple(centre)
     camera.up, camera.parallel_projection = tuple(DRIVE), True
@@ -173,9 +191,9 @@ def _plotter(scenery: Scenery) -> Iterator[Stage]:
     plotter.show(auto_close=False)
 
     def picture(moment: Moment) -> Picture:
-        grid.points = mesh.points + moment.points + moment.base
+        grid.points = scenery.placed(moment)
         if plate is not None:
-            plate.position, plate.prop.color = tuple(moment.base), TOUCHED if moment.touched else PLATE
+            plate.position, plate.prop.show_edges = tuple(moment.base), moment.touched
         plotter.render()
         return np.asarray(plotter.screenshot(return_img=True), dtype=np.uint8)[..., :3].copy()
 
@@ -197,24 +215,59 @@ def _painter(scenery: Scenery) -> Stage:
     rows = mesh.hexahedra[mesh.part[: len(mesh.hexahedra)] == STRIP]
     rows = rows[mesh.points[rows].mean(axis=1)[:, 2] > -1e-9]  # of two legs side by side one hides the other
     ball = np.unique(mesh.triangles)
-    (strip,) = axes.plot([], [], color=COLOURS[STRIP], linewidth=2.5)
+    (strip,) = axes.plot([], [], color=scenery.strip, linewidth=2.5)
     spot = axes.add_patch(Circle((0.0, 0.0), 0.5 * float(np.ptp(mesh.points[ball, 2])), color="0.5"))
     low, high = scenery.plate if scenery.plate is not None else np.zeros((2, 3))
-    plate = axes.add_patch(Rectangle(low[:2], *(high - low)[:2], visible=scenery.plate is not None))
+    plate = axes.add_patch(Rectangle(low[:2], *(high - low)[:2], fc=PLATE, lw=3.0, visible=bool(high.any())))
     centre, reach = scenery.room.mean(axis=0)[:2], np.ptp(scenery.room, axis=0)
     half = 0.56 * max(reach[0] / WIDTH, reach[1] / HEIGHT) * np.array([WIDTH, HEIGHT])
     axes.set(xlim=(centre[0] - half[0], centre[0] + half[0]), ylim=(centre[1] - half[1], centre[1] + half[1]))
     axes.axis("off")
 
     def picture(moment: Moment) -> Picture:
-        points = mesh.points + moment.points + moment.base
+        points = scenery.placed(moment)
         strip.set_data(*points[rows].mean(axis=1)[:, :2].T)
         spot.set(center=points[ball].mean(axis=0)[:2])
-        plate.set(xy=(low + moment.base)[:2], color=TOUCHED if moment.touched else PLATE)
+        plate.set(xy=(low + moment.base)[:2], edgecolor=TOUCHED if moment.touched else PLATE)
         canvas.draw()
         return np.asarray(canvas.buffer_rgba(), dtype=np.uint8)[..., :3].copy()
 
     return picture
+
+
+def write_film(
+    stage: Stage,
+    moments: Sequence[Moment],
+    gif: Path,
+    mp4: Path | None = None,
+    *,
+    below: Callable[[int], Picture] | None = None,
+    track: Callable[[Iterable[int]], Iterable[int]] = iter,
+) -> None:
+    """Film the moments with their lines of text, and `below` each its strip, as gif and, if given, as mp4.
+
+    One picture is drawn after the other, so that memory does not grow with the film.
+    """
+    from matplotlib.font_manager import findfont
+    from PIL import Image, ImageDraw, ImageFont
+
+    font = ImageFont.truetype(findfont("DejaVu Sans"), 16)
+
+    def framed(chosen: Iterable[int]) -> Iterator[Picture]:
+        for number in chosen:
+            parts = [stage(moments[number]), *([below(number)] if below else [])]
+            image = Image.fromarray(np.concatenate(parts))
+            pen = ImageDraw.Draw(image)
+            for row, line in enumerate(moments[number].lines):
+                last = row == len(moments[number].lines) - 1
+                colour = TOUCHED if last and moments[number].touched else TEXT[min(row, 1)]
+                pen.text((12, 8 + 24 * row), line, fill=colour, font=font)
+            yield np.asarray(image, dtype=np.uint8)
+
+    count = len(moments)
+    marked = next((number for number, moment in enumerate(moments) if moment.touched), 0)
+    samples, pictures = list(framed([0, count // 2, count - 1, marked])), framed(track(range(count)))
+    write_gif(gif, written_as_mp4(mp4, pictures, RATE) if mp4 else pictures, RATE, samples=samples)
 
 
 def can_encode() -> bool:

@@ -17,7 +17,7 @@ Writes:  modes.csv (the table), modes.npz (shapes along the strip), modes.png; f
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated
 
@@ -25,7 +25,8 @@ import numpy as np
 
 from beam import Modes, write_mode_motion, write_modes
 from studies import letter
-from studies.shell.film import MOST_FRAMES, Moment, Scenery, stage_of, write_gif
+from studies.shell.columns import written
+from studies.shell.film import MOST_FRAMES, Moment, Scenery, stage_of, write_film
 from studies.shell.options import Within
 from studies.shell.scene import Scene, SceneError, damping_of, free_period, model_of, modes_of
 from studies.shell.study import Run, study
@@ -36,23 +37,20 @@ if TYPE_CHECKING:
 FILMED, DRAWN = 6, 8
 """Modes with a film, and in the figure; lowest first."""
 
-RATE = 20.0
-"""Frames a second of the films."""
-
 LARGEST = 0.05
 """Largest displacement of a drawn shape over the greatest extent of the strip; legs do not cross yet."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class Row:
+class NaturalMode:
     """One mode."""
 
-    mode: int
-    frequency_hz: float
-    decay_rate_per_s: float
-    tip_value: float
-    participation: float
-    coupled: bool
+    mode: Annotated[int, "mode"]
+    frequency_hz: Annotated[float, "frequency [Hz]"]
+    decay_rate_per_s: Annotated[float, "decay rate c [1/s]; amplitudes fall as exp(−c t/2)"]
+    tip_value: Annotated[float, "tip value φ [kg^(-1/2)]"]
+    participation: Annotated[float, "participation Γ in a motion of the base [kg^(1/2)]"]
+    coupled: Annotated[bool, "takes part in impacts"]
 
 
 @study(needs={"frequency 10": 1e-3}, quick={"filmed": 2})
@@ -71,7 +69,8 @@ def modes(
     rows = rows_of(scene, solved)
     if mode > len(rows):
         raise SceneError(f"--mode must be at most {len(rows)}, the modes of this scene, not {mode}")
-    run.table("modes", rows, "Natural modes: f, c, phi [kg^(-1/2)], Gamma [kg^(1/2)].", of=Row)
+    run.table("modes", rows, "The natural modes of the spring, lowest first.", of=NaturalMode)
+    tell(run, rows)
     if solved is None:
         run.say("measured modes have no shapes: nothing to draw or to look at in ParaView")
     else:
@@ -81,7 +80,7 @@ def modes(
     return {"rows": rows, "free_period_s": None if solved is None else free_period(scene)}
 
 
-def rows_of(scene: Scene, solved: Modes | None) -> list[Row]:
+def rows_of(scene: Scene, solved: Modes | None) -> list[NaturalMode]:
     """The table; without shapes, of the modal data."""
     if solved is None:
         model = model_of(scene)
@@ -91,7 +90,7 @@ def rows_of(scene: Scene, solved: Modes | None) -> list[Row]:
         rates = damping_of(scene).decay_rates(solved)
         columns = (solved.frequencies_hz, rates, solved.phi, solved.participation, solved.coupled)
     return [
-        Row(
+        NaturalMode(
             mode=number,
             frequency_hz=float(f),
             decay_rate_per_s=float(c),
@@ -110,9 +109,13 @@ def largest_of(solved: Modes) -> float:
 
 def write_shapes(scene: Scene, run: Run, solved: Modes, mode: int, frames: int) -> None:
     """Arrays, meshes and the figure."""
+    from studies.shell.plotting import in_house_style  # matplotlib is slow to import
+
     along, radius, largest = solved.displacement_along(2), scene.tip.ball_radius_m, largest_of(solved)
     run.arrays(
         "modes",
+        "Shapes along the strip, of unit modal mass: arc_length_m, points_m at rest (x, y), displacement "
+        "[kg^(-1/2)], rotation [kg^(-1/2) m^(-1)], frequencies_hz, whether impacts excite it, tip_at_m.",
         frequencies_hz=solved.frequencies_hz,
         coupled=solved.coupled,
         arc_length_m=along.s,
@@ -122,13 +125,15 @@ def write_shapes(scene: Scene, run: Run, solved: Modes, mode: int, frames: int) 
         tip_at_m=solved.discretization.spring.tip_at,
     )
     rates = np.nan_to_num(damping_of(scene).decay_rates(solved))
-    write_modes(run.path("modes.vtu"), solved, decay_rates=rates, largest=largest, ball_radius=radius)
-    write_mode_motion(
-        run.path("motion.pvd"), solved, mode, frames=frames, largest=largest, ball_radius=radius
+    meshes, film = run.path("modes.vtu", "The modes for ParaView: Warp By Vector."), f"mode {mode + 1}"
+    write_modes(meshes, solved, decay_rates=rates, largest=largest, ball_radius=radius)
+    motion = run.path("motion.pvd", f"One period of {film} for ParaView.")
+    write_mode_motion(motion, solved, mode, frames=frames, largest=largest, ball_radius=radius)
+    run.path("motion_frames", "Frames of motion.pvd: points of the spring [m].")
+    caption = (
+        "Shapes of the lowest modes in the plane of the strip, enlarged to the same largest displacement."
     )
-    run.path("motion_frames")
-    caption = "Shapes in the plane of the strip, enlarged; grey: at rest, dashed: half a period later."
-    run.figure("modes", draw(solved), caption)
+    run.figure("modes", in_house_style(draw)(solved), caption)
 
 
 def write_films(run: Run, solved: Modes, radius: float, count: int, frames: int) -> None:
@@ -139,9 +144,11 @@ def write_films(run: Run, solved: Modes, radius: float, count: int, frames: int)
         for number in run.track(range(count), "films of modes"):
             shape = scenery.mesh.normalised(largest)[number]
             phases = 2.0 * math.pi * np.arange(frames) / frames
-            moments = [Moment(points=math.cos(phase) * shape, base=np.zeros(3)) for phase in phases]
-            pictures = [stage(moment) for moment in moments]
-            write_gif(run.path(f"mode_{number + 1}.gif"), pictures, RATE, samples=pictures[:: frames // 2])
+            name = f"mode {number + 1}: {solved.frequencies_hz[number]:.1f} Hz"
+            moments = [
+                Moment(points=math.cos(phase) * shape, base=np.zeros(3), lines=[name]) for phase in phases
+            ]
+            write_film(stage, moments, run.path(f"mode_{number + 1}.gif", f"One period of {name}, enlarged."))
 
 
 def judge(scene: Scene, run: Run) -> None:
@@ -152,37 +159,50 @@ def judge(scene: Scene, run: Run) -> None:
     run.verdict("free_period", verdict, found=f"{1e3 * period:.2f} ms")  # type: ignore[arg-type]
 
 
+def tell(run: Run, rows: Sequence[NaturalMode]) -> None:
+    """The findings."""
+    run.finding(f"The lowest mode of the spring has a frequency of {written(rows[0].frequency_hz)} Hz.")
+    free = [f"{row.mode}" for row in rows if not row.coupled]
+    if free:
+        run.finding(
+            "The spring has modes that move the ball along the legs at most; impacts do not excite them."
+        )
+    else:
+        run.finding(
+            "Every mode of the spring moves the ball towards the plate, so impacts excite all of them."
+        )
+
+
 def draw(solved: Modes) -> Figure:
     """The first modes in the plane of the strip."""
-    from studies.shell.plotting import PAGE, PALETTE, label, new_figure  # matplotlib is slow to import
+    from studies.shell import plotting
 
     along = solved.displacement_along(2)
     points, count = 1e3 * along.points, min(DRAWN, solved.omega.size)
     ball = int(np.argmin(np.abs(along.s - solved.discretization.spring.tip_at)))
     swing, columns = 1e3 * largest_of(solved), min(2, count)
     rows, extent = math.ceil(count / columns), np.ptp(points, axis=0) + 3.0 * swing
-    height = 0.014 + rows * (0.007 + extent[1] / extent[0] * (PAGE - 0.014) / columns)
+    height = 0.022 + rows * (0.007 + extent[1] / extent[0] * (plotting.PAGE - 0.014) / columns)
     shared = {"sharex": True, "sharey": True, "squeeze": False}
-    figure, axes = new_figure(rows, columns, width=PAGE, height=height, **shared)
+    figure, axes = plotting.new_figure(rows, columns, width=plotting.PAGE, height=height, **shared)
     for axis in axes.flat[count:]:
         axis.set_visible(False)
     for number, axis in enumerate(axes.flat[:count]):
         shape = along.displacement[number]
         step = shape * (swing / np.linalg.norm(shape, axis=1).max())
-        axis.plot(points[:, 0], points[:, 1], color="0.75", linewidth=0.8)
-        strong = PALETTE[1 if solved.coupled[number] else 2]
-        for sign, style, colour, face in ((-1.0, (0, (4, 2)), "0.45", "white"), (1.0, "-", strong, strong)):
-            place = points + sign * step
-            axis.plot(place[:, 0], place[:, 1], color=colour, linestyle=style, linewidth=1.1)
-            axis.plot(*place[ball, :2], "o", color=colour, markersize=4.5, markerfacecolor=face)
-        kind = "" if solved.coupled[number] else ", uncoupled"
-        words = f"mode {number + 1}: {solved.frequencies_hz[number]:.2f} Hz{kind}"
-        axis.set_title(words, loc="left", pad=2.0, fontsize=8.0)
-        axis.set_aspect("equal")
-        axis.margins(0.05, 0.2)
+        axis.plot(points[:, 0], points[:, 1], color="0.75", linewidth=0.8, label="at rest")
+        colour = plotting.BLUE if solved.coupled[number] else plotting.VERMILION
+        words = "mode that impacts excite" if solved.coupled[number] else "mode that impacts do not excite"
+        look = {"color": colour, "linewidth": 1.1, "marker": "o", "markersize": 4.5, "markevery": [ball]}
+        axis.plot(*(points + step)[:, :2].T, **look, label=f"{words}; circle: ball")
+        look |= {"color": "0.45", "markerfacecolor": "white", "linestyle": (0, (4, 2))}
+        axis.plot(*(points - step)[:, :2].T, **look, zorder=1.9, label="half a period later")
+        plotting.panel(axis, number, f"mode {number + 1}: {solved.frequencies_hz[number]:.4g} Hz")
+        axis.margins(0.05, 0.15)
     for axis in axes[:, 0]:
-        label(axis.yaxis, "y", "mm")
+        plotting.label(axis.yaxis, "y", "mm")
     for axis in axes.flat[:count][-columns:]:
-        label(axis.xaxis, "x", "mm")
+        plotting.label(axis.xaxis, "x", "mm")
         axis.tick_params(labelbottom=True)
+    plotting.legend_below(figure, axes.flat[:count], 2, title=f"largest displacement drawn as {swing:.1f} mm")
     return figure

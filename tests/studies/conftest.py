@@ -60,8 +60,8 @@ def study_of(name: str) -> Study:
 
 
 def assert_complete(name: str, folder: Path, summary: dict, manifest: dict) -> None:
-    """A study that ends well leaves every file that it lists, a table, a figure, a summary, and its words: for
-    each file, and each column, what it holds; one value in each cell; one to three findings; a page."""
+    """A study that ends well leaves every file that it lists, a table, a figure and a summary; what each file
+    and each column holds; one value in each cell; one to three findings; a page."""
     files = [folder / file for file in manifest.get("files", [])]
     assert all(path.exists() for path in files)
     holds = json.loads((folder / "columns.json").read_text())

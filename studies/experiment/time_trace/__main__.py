@@ -11,14 +11,13 @@ Computed, at 21.50 Hz, where the letter's p1 goes over into p4:
     collision        restitution, delay and kick of the single-mode description (contact.collisions)
     spectrum         amplitudes of the read-out at the multiples of 1/(orbit period)
 
-A motion without a period up to 64 drive periods is drawn and told as such; its spectrum then has leakage.
+The figure says so where a motion has no period up to 64 drive periods; its spectrum then has leakage.
 
 With --film the orbit is filmed, slow at the collision, seen in space (`film`).
 
 Run:     python -m studies time_trace [--excess E] [--frequency HZ] [--film]
-Writes:  time_trace.npz (time, tip, read-out), collisions.csv (contact.Collision: SI units), spectrum.npz,
-         peaks.csv, time_trace.png, spectrum.png; with --film motion.gif, motion.mp4 (extra `video`) and
-         motion.pvd for ParaView
+Writes:  time_trace.npz, collisions.csv, spectrum.npz, peaks.csv, time_trace.png, spectrum.png; with --film
+         motion.gif, motion.mp4 (extra `video`) and motion.pvd for ParaView
 """
 
 from __future__ import annotations
@@ -33,8 +32,9 @@ from contact import Collision, StroboscopicMap
 from contact.orbits import born
 from studies import letter
 from studies.experiment.time_trace import film as filming
-from studies.experiment.time_trace.model import Peak, close_up, lines_of, peaks_of, trace_of
+from studies.experiment.time_trace.model import WORDS, Peak, close_up, lines_of, peaks_of, trace_of
 from studies.physics.descriptions import word
+from studies.shell.columns import written
 from studies.shell.film import MOST_FRAMES
 from studies.shell.options import HERTZ, Within
 from studies.shell.run import Verdict
@@ -49,13 +49,6 @@ APERIODIC = 8
 
 TOLD = ("first_touch", "approach", "restitution", "delay", "kick", "impacts", "contact_time", "ringing")
 """Columns of a collision that are shown to a person."""
-
-COLLISIONS = (
-    'Collisions in the stretch that is shown; "-" or empty: the number does not exist. There is no approach '
-    "where mode 1 alone would not reach the gap: ringing made the touch. There is no restitution or delay "
-    "where mode 1 does not come back to the gap. A delay is negative where the motion of mode 1 after the "
-    "collision, continued back in time, leaves the plate before the incoming one reaches it."
-)
 
 
 def conditions(scene: Scene, options: Mapping[str, Any]) -> tuple[list[float], float]:
@@ -93,43 +86,49 @@ def time_trace(
     lines_hz, amplitude = lines_of(part, length / share * oscillator.period)
     peaks = peaks_of(lines_hz, amplitude, model.frequencies_hz, drive_hz)
     unit = "rad" if scene.readout.quantity == "rotation" else "m"
-    run.arrays("time_trace", time_s=trace.time, tip_m=trace.tip, **{f"readout_{unit}": trace.readout})
-    run.table("collisions", trace.collisions, COLLISIONS, of=Collision, show=TOLD)
-    run.arrays("spectrum", frequency_hz=lines_hz, **{f"amplitude_{unit}": amplitude})
-    run.table("peaks", peaks, f"Peaks of the read-out [{unit}] and their modes.", of=Peak, show=())
+    holds = f"time_s from a strobe on [s], tip_m [m] relative to the base, readout_{unit} [{unit}]."
+    run.arrays("time_trace", holds, time_s=trace.time, tip_m=trace.tip, **{f"readout_{unit}": trace.readout})
+    collided = "Collisions in the stretch of the figure; one may hold several impacts."
+    run.table("collisions", trace.collisions, collided, of=Collision, show=TOLD, words=WORDS)
+    holds = f"Lines of the spectrum: frequency_hz [Hz] and amplitude_{unit} of the read-out [{unit}]."
+    run.arrays("spectrum", holds, frequency_hz=lines_hz, **{f"amplitude_{unit}": amplitude})
+    peaked = {"amplitude": f"amplitude of the read-out [{unit}]"}
+    run.table("peaks", peaks, "Peaks in the spectrum of the read-out.", of=Peak, show=(), words=peaked)
     from studies.experiment.time_trace.figure import draw_spectrum, draw_trace  # matplotlib is slow to import
 
-    name = word(settled.period)
+    name, impacts = word(settled.period), round(trace.impact_times.size / share)
     near = close_up(oscillator, settled.end, trace.collisions[0]) if trace.collisions else None
     run.figure(
         "time_trace",
         draw_trace(trace, near, scene.stop.gap_m, unit, f"{name}, {drive_hz:.2f} Hz"),
-        "Tip and read-out point of the settled orbit, impacts marked; on the right one collision: tip past "
-        "the plate and contact force, contact shaded.",
+        "Ball and read-out point of the settled motion against time, and a collision from close by.",
     )
     run.figure(
         "spectrum",
         draw_spectrum(lines_hz, amplitude, model.frequencies_hz, drive_hz, unit),
-        "Amplitudes of the read-out over one period of the orbit; dotted: the modes, dashed: the drive.",
+        "Spectrum of the read-out over one period of the orbit.",
     )
     amplitude_m = oscillator.driven.amplitude
     size_g = amplitude_m * oscillator.driven.angular_frequency**2 / g
     run.say(f"{drive_hz:g} Hz, excess {excess:g}, base {1e3 * amplitude_m:.4g} mm, {size_g:.3g} g: {name}")
+    higher = sorted({peak.mode for peak in peaks if peak.mode is not None and peak.mode > 1})
+    tell(run, settled.period, impacts, trace.collisions, higher)
     filmed = dict[str, object]()
     if film:
-        words = f"{name}, {drive_hz:g} Hz, excess {excess:g}"
+        words = f"base shaken at {drive_hz:.4g} Hz with {1e3 * amplitude_m:.3g} mm: {repeats(settled.period)}"
         filmed["film"] = filming.film(scene, run, oscillator, settled, trace, words, frames=frames)
     seen = letter.PERIODS.get(drive_hz) if run.letters and excess == letter.TIME_TRACE_EXCESS else None
     if seen == letter.PERIODS[letter.TIME_TRACE_HZ]:
-        judge(run, name, seen, trace.collisions, peaks)
+        judge(run, name, seen, trace.collisions, higher)
     return {
+        "rows": trace.collisions,
         "frequency_hz": drive_hz,
         "excess": excess,
         "drive_amplitude_m": amplitude_m,
         "drive_acceleration_g": size_g,
         "period": settled.period,
         "letter": seen,
-        "impacts": round(trace.impact_times.size / share),
+        "impacts": impacts,
         "impact_times_s": trace.impact_times,
         "collisions": trace.collisions,
         "modes_hz": model.frequencies_hz,
@@ -139,15 +138,35 @@ def time_trace(
     }
 
 
-def judge(run: Run, period: str, seen: int, found: Sequence[Collision], peaks: Sequence[Peak]) -> None:
+def repeats(period: int) -> str:
+    """When the motion repeats."""
+    if period < 2:
+        return "it repeats in each drive period" if period else "it has no period up to 64 drive periods"
+    return f"it repeats after {period} drive periods"
+
+
+def tell(run: Run, period: int, impacts: int, found: Sequence[Collision], higher: Sequence[int]) -> None:
+    """The findings."""
+    touches = {0: " and never touches the plate", 1: ", with one impact"}.get(
+        impacts, ", with several impacts"
+    )
+    run.finding(f"The motion settles: {repeats(period)}{touches if period else ''}.")
+    if found and math.isfinite(found[0].restitution):
+        run.finding(
+            f"Mode 1 leaves a collision with {written(found[0].restitution, 2)} times its approach velocity."
+        )
+    if found and higher:
+        run.finding(f"Higher modes ring after the impact; {len(higher)} of them have a peak in the spectrum.")
+
+
+def judge(run: Run, period: str, seen: int, found: Sequence[Collision], higher: Sequence[int]) -> None:
     """Verdicts on Fig. 4."""
     run.verdict("time_trace", "agrees" if period == f"p{seen}" else "differs", found=period)
-    higher = sorted({peak.mode for peak in peaks if peak.mode is not None and peak.mode > 1})
     verdict: Verdict = "agrees" if len(higher) > 2 else "in part" if higher else "differs"
     told = f"modes {', '.join(map(str, higher))} have" if higher else "no mode above the first has"
-    run.verdict("many_modes", verdict, found=f"{told} a peak in the spectrum")
+    run.verdict("many_modes", verdict, found=f"{told} a peak in the spectrum", figure="spectrum")
     if found and math.isfinite(found[0].restitution):
         near = abs(found[0].restitution - letter.RESTITUTION) <= 0.5 * letter.RESTITUTION
-        note = f"delay {1e3 * found[0].delay:.3f} ms, kick {found[0].kick:.3f}"
-        verdict, told = "agrees" if near else "differs", f"{found[0].restitution:.3f}"
+        note = f"Time delay {written(1e3 * found[0].delay)} ms, kick {written(found[0].kick)}."
+        verdict, told = "agrees" if near else "differs", written(found[0].restitution, 3)
         run.verdict("restitution_on_orbit", verdict, found=told, note=note)

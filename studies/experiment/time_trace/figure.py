@@ -14,8 +14,8 @@ from studies.shell import plotting
 
 Array = NDArray[np.float64]
 
-APART = 1.05
-"""Least ratio of two frequencies whose modes are both numbered."""
+APART = 11.0
+"""Least distance of two modes that are both numbered [pt]."""
 
 MOST_DRAWN = 4_000
 """Points of a line: more than a page has dots."""
@@ -26,26 +26,27 @@ MARK = {"color": plotting.VERMILION, "linewidth": 0.6, "linestyle": ":", "zorder
 @plotting.in_house_style
 def draw_trace(trace: Trace, near: CloseUp | None, gap: float, unit: str, title: str) -> Figure:
     """Tip and read-out against time, impacts marked, and one collision beside them; `unit` is m or rad."""
-    shared: plotting.Style = {"sharex": "col", "width_ratios": [2.3, 1.0]}
-    figure, axes = plotting.new_figure(2, 2, width=plotting.PAGE, height=0.090, **shared)
+    shared: plotting.Style = {
+        "sharex": "col",
+        "squeeze": False,
+        "width_ratios": [2.0, 1.0] if near else [1.0],
+    }
+    figure, axes = plotting.new_figure(2, 2 if near else 1, width=plotting.PAGE, height=0.095, **shared)
     (tip, readout), step = axes[:, 0], max(1, trace.time.size // MOST_DRAWN)
     for number, (axis, shown) in enumerate(((tip, trace.tip), (readout, trace.readout))):
-        axis.plot(1e3 * trace.time[::step], 1e3 * shown[::step], color=plotting.BLUE, linewidth=0.8)
+        motion: plotting.Style = {"color": plotting.BLUE, "linewidth": 0.8, "label": "motion"}
+        axis.plot(1e3 * trace.time[::step], 1e3 * shown[::step], **motion)
         axis.margins(x=0.0)
         for at in 1e3 * trace.impact_times:
-            axis.axvline(at, **MARK)
-        plotting.panel(axis, number, (title, "read-out point; dotted: impacts")[number])
-    plotting.label(tip.yaxis, "tip displacement $ξ$", "mm")
-    plotting.label(readout.yaxis, f"read-out {'rotation' if unit == 'rad' else 'displacement'}", f"m{unit}")
+            axis.axvline(at, **MARK, label="impact")
+        plotting.panel(axis, number, (f"ball: {title}", "read-out point")[number])
+    plotting.label(tip.yaxis, "ball", "mm")
+    plotting.label(readout.yaxis, "rotation" if unit == "rad" else "read-out", f"m{unit}")
     plotting.label(readout.xaxis, "time", "ms")
-    tip.axhline(1e3 * gap, **plotting.GUIDE)
-    across = tip.get_yaxis_transform()
-    tip.annotate("plate", (0.005, 1e3 * gap), xycoords=across, fontsize=plotting.NOTE, va="bottom")
-    if near is None:
-        for axis in axes[:, 1]:
-            axis.set_visible(False)
-    else:
+    tip.axhline(1e3 * gap, **plotting.GUIDE, label="plate")
+    if near:
         _collision(axes[:, 1], near)
+    plotting.legend_below(figure, axes.flat, 5)
     return figure
 
 
@@ -54,16 +55,18 @@ def _collision(axes: Sequence[Axes], near: CloseUp) -> None:
     axes[0].plot(micro, 1e6 * near.height, color=plotting.BLUE, linewidth=1.0)
     axes[0].axhline(0.0, **plotting.GUIDE)
     if np.all(np.isfinite(near.force)):
-        axes[1].plot(micro, near.force, color=plotting.VERMILION, linewidth=1.0)
+        axes[1].plot(micro, near.force, color=plotting.VERMILION, linewidth=1.0, label="contact force")
+    else:
+        axes[1].text(0.5, 0.5, "an impact law\nhas no force", transform=axes[1].transAxes, ha="center")
     for axis in axes:
         for begin, end in near.spans:
-            axis.axvspan(1e6 * begin, 1e6 * end, color="0.9", zorder=0, linewidth=0)
+            axis.axvspan(1e6 * begin, 1e6 * end, color="0.9", zorder=0, linewidth=0, label="in contact")
         axis.margins(x=0.0)
-    plotting.panel(axes[0], 2, "collision, contact shaded")
-    plotting.panel(axes[1], 3)
-    plotting.label(axes[0].yaxis, "tip past the plate", "µm")
-    plotting.label(axes[1].yaxis, "contact force", "N")
-    plotting.label(axes[1].xaxis, "time from the first touch", "µs")
+    plotting.panel(axes[0], 2, "ball past the plate")
+    plotting.panel(axes[1], 3, "contact force")
+    plotting.label(axes[0].yaxis, "depth", "µm")
+    plotting.label(axes[1].yaxis, "force", "N")
+    plotting.label(axes[1].xaxis, "time from touch", "µs")
     axes[1].set_ylim(bottom=0.0)
 
 
@@ -78,13 +81,13 @@ def draw_spectrum(frequency: Array, amplitude: Array, modes_hz: Array, drive_hz:
     axis.plot(frequency[inside], lines, "o-", color=plotting.BLUE, lw=0.5, ms=1.5, label="read-out")
     top = float(lines.max())
     floor = max(float(lines.min()), 1e-8 * top)
-    axis.set(xscale="log", yscale="log", ylim=(0.5 * floor, 30.0 * top), xlim=(0.9 * frequency[1], limit))
-    last = 0.0
+    axis.set(xscale="log", yscale="log", ylim=(0.5 * floor, 2.0 * top), xlim=(0.9 * frequency[1], limit))
+    last, apart = 0.0, (limit / frequency[1]) ** (APART / (72.0 * 0.85 * figure.get_figwidth()))
     for number, at in enumerate(shown.tolist(), start=1):
         axis.axvline(at, **MARK, label="modes, numbered" if number == 1 else None)
-        if at > APART * last:
-            style = {"ha": "center", "va": "top", "fontsize": plotting.NOTE, "color": plotting.VERMILION}
-            axis.text(at, 0.98, str(number), transform=axis.get_xaxis_transform(), **style)
+        if at > apart * last:
+            style = {"ha": "center", "va": "bottom", "fontsize": plotting.NOTE, "color": plotting.VERMILION}
+            axis.text(at, 1.0, str(number), transform=axis.get_xaxis_transform(), **style)
             last = at
     axis.axvline(drive_hz, **plotting.GUIDE, label="drive")
     plotting.label(axis.xaxis, "frequency", "Hz")

@@ -1,8 +1,8 @@
 """The spring in motion: one period of a settled orbit as a film, slow at the collision.
 
 Higher modes are drawn enlarged, so that they show.  The ball is where the tip is: it meets the plate when the
-computed tip does, and the plate turns orange while they touch.  Below, the tip against time.  For ParaView
-motion.pvd with motion_frames has the arrays `displacement`, true, and the points as they are drawn.
+computed tip does, and the plate gets orange edges while they touch.  Below, the tip against time.  For
+ParaView motion.pvd with motion_frames has the arrays `displacement`, true, and the points as they are drawn.
 
 Times count from the strobe at which the film begins. The step from frame to frame is that of the flight, at
 most the distance from the nearest contact over `NEARER`, and 1/`IN_CONTACT` of a contact while it lasts:
@@ -22,8 +22,9 @@ The departure leaves the tip where it is: with any M the ball meets the plate wh
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -33,16 +34,18 @@ from beam import Modes, SpringMesh, write_frames
 from contact import ImpactKind, ImpactOscillator, State, simulate
 from contact.orbits import Settled
 from studies.experiment.time_trace.model import Trace, touching
+from studies.shell.columns import minus
 from studies.shell.film import (
     DRIVE,
+    RATE,
+    TOUCHED,
     WIDTH,
     Moment,
     Picture,
     Scenery,
     can_encode,
     stage_of,
-    write_gif,
-    written_as_mp4,
+    write_film,
 )
 from studies.shell.programs import needs
 from studies.shell.scene import Scene, modes_of, shift_at_gap
@@ -51,8 +54,11 @@ from studies.shell.study import Run
 LARGEST_SHIFT = 0.01
 """Relative change of the free frequency with amplitude [1]; a linear film above this bound is misleading."""
 
-RATE = 20.0
-"""Frames a second: gif keeps time in hundredths of a second."""
+CUE = 2.0
+"""Times slower than the flight, from where on the film says so in words."""
+
+DOTS = 110
+"""Points an inch of the strip below the spring."""
 
 
 def film(
@@ -75,68 +81,74 @@ def film(
     scenery = Scenery.of(modes, ball_radius=radius, gap=gap, swing=swing)
     drawn, magnification = drawn_shapes(scenery.mesh, modes, orbit.coordinates)
     true, _ = drawn_shapes(scenery.mesh, modes, orbit.coordinates, 1.0)
+    enlarged = [f"higher modes are drawn {magnification:g} times larger"] if magnification > 1.0 else []
     moments = [
-        Moment(points=points, base=base * DRIVE, touched=bool(touched))
-        for points, base, touched in zip(drawn, orbit.base, orbit.touched, strict=True)
+        Moment(
+            points=points,
+            base=orbit.base[i] * DRIVE,
+            touched=bool(orbit.touched[i]),
+            lines=[words, *enlarged, *lines_of(orbit, i)],
+        )
+        for i, points in enumerate(drawn)
     ]
 
     def grids() -> Iterator[tuple[float, Any]]:
         """Time [s] and pyvista.UnstructuredGrid of every frame, the points as they are drawn."""
         for time, moment, displacement in zip(orbit.time.tolist(), moments, true, strict=True):
-            grid = scenery.mesh.grid(scenery.mesh.points + moment.points + moment.base)
+            grid = scenery.mesh.grid(scenery.placed(moment))
             grid.point_data["displacement"] = displacement
             yield time, grid
 
-    write_frames(run.path("motion.pvd"), grids())
-    run.path("motion_frames")
+    write_frames(run.path("motion.pvd", "The film for ParaView: times [s] of the frames."), grids())
+    run.path("motion_frames", "Frames of motion.pvd: points as drawn, true displacement [m].")
     slow = f"{orbit.slowed.min():.0f} to {orbit.slowed.max():.0f} times slower than life"
     run.say(f"{words}: {len(orbit.contacts)} contacts, {slow}")
-    texts = words, f"higher modes x {magnification:g}"
+    if not can_encode():
+        run.say(needs("no mp4: it", "imageio-ffmpeg"))
+    seen = "One period of the orbit, slow at the collision; below, the tip against time."
+    mp4 = run.path("motion.mp4", seen) if can_encode() else None
+    gif, track = run.path("motion.gif", seen), partial(run.track, unit="frames")
     with stage_of(scenery, simple=run.quick) as stage:
-        # one picture after the other, so that memory does not grow with the film
-
-        def pictured(chosen: Iterable[int]) -> Iterator[Picture]:
-            return composed(orbit, trace, ((i, stage(moments[i])) for i in chosen), gap, texts)
-
-        samples = list(pictured([0, frames // 2, frames - 1]))
-        pictures = pictured(run.track(range(frames), "frames"))
-        if can_encode():
-            pictures = written_as_mp4(run.path("motion.mp4"), pictures, RATE)
-        else:
-            run.say(needs("no mp4: it", "imageio-ffmpeg"))
-        write_gif(run.path("motion.gif"), pictures, RATE, samples=samples)
+        write_film(stage, moments, gif, mp4, below=strip(orbit, trace, gap), track=track)
     return {"contacts_s": orbit.contacts, "magnification": magnification}
 
 
-def composed(
-    orbit: FilmedOrbit, trace: Trace, shown: Iterable[tuple[int, Picture]], gap: float, texts: tuple[str, str]
-) -> Iterator[Picture]:
-    """The frames: what is seen, the time and how it is slowed, and the tip against time with a mark."""
-    from PIL import Image, ImageDraw, ImageFont
+def lines_of(orbit: FilmedOrbit, i: int) -> tuple[str, str]:
+    """What is written above a frame: how slow it is shown, time and tip."""
+    factor = float(f"{orbit.slowed[i]:.2g}")
+    cue = ", near the impact" if orbit.slowed[i] > CUE * orbit.slowed.min() else ""
+    place = "touches the plate" if orbit.touched[i] else f"is at {minus(f'{1e3 * orbit.tip[i]:.2f}')} mm"
+    return f"slow motion: {factor:g} times slower{cue}", f"at {1e3 * orbit.time[i]:.2f} ms the ball {place}"
 
-    from studies.shell.plotting import BLUE, GUIDE, house_style, label, new_figure
 
-    with house_style():
-        figure, axes = new_figure(width=WIDTH / 110 * 0.0254, height=150 / 110 * 0.0254)
+def strip(orbit: FilmedOrbit, trace: Trace, gap: float) -> Callable[[int], Picture]:
+    """The tip against time, as it stands below a frame, with a mark at the time of the frame."""
+    from PIL import Image, ImageDraw
+
+    from studies.shell.plotting import BLUE, GUIDE, INCH, NOTE, house_style, label, new_figure, style_of
+
+    with house_style(), style_of("paper"):
+        figure, axes = new_figure(width=WIDTH / DOTS * INCH, height=150 / DOTS * INCH)
         axes.plot(1e3 * trace.time, 1e3 * trace.tip, color=BLUE)
         axes.axhline(1e3 * gap, **GUIDE)
+        axes.annotate(
+            "plate", (1.0, 1e3 * gap), xycoords=axes.get_yaxis_transform(), fontsize=NOTE, va="center"
+        )
         axes.set_xlim(0.0, 1e3 * orbit.duration)
         label(axes.xaxis, "time", "ms")
-        label(axes.yaxis, "tip", "mm")
-        figure.set(dpi=110)
+        label(axes.yaxis, "ball", "mm")
+        figure.set(dpi=DOTS)
         figure.canvas.draw()
-    below = np.asarray(figure.canvas.buffer_rgba(), dtype=np.uint8)[..., :3]  # type: ignore[attr-defined]
-    font = ImageFont.load_default(size=18)
-    for i, picture in shown:
-        place = axes.transData.transform((1e3 * orbit.time[i], 1e3 * orbit.tip[i]))
-        image = Image.fromarray(np.concatenate([picture, below]))
-        pen = ImageDraw.Draw(image)
-        at = place[0], image.height - place[1]
-        pen.circle(at, 5, fill="#FF7A1A" if orbit.touched[i] else "black")
-        pen.text((12, 8), texts[0], fill="black", font=font)
-        slowed = f"{1e3 * orbit.time[i]:.2f} ms, {orbit.slowed[i]:.0f} times slower; {texts[1]}"
-        pen.text((12, 32), slowed, fill="#5A5A5A", font=font)
-        yield np.asarray(image, dtype=np.uint8)
+    drawn = np.asarray(figure.canvas.buffer_rgba(), dtype=np.uint8)[..., :3]  # type: ignore[attr-defined]
+
+    def marked(i: int) -> Picture:
+        image = Image.fromarray(drawn)
+        across, up = axes.transData.transform((1e3 * orbit.time[i], 1e3 * orbit.tip[i]))
+        colour = TOUCHED if orbit.touched[i] else "black"
+        ImageDraw.Draw(image).circle((across, image.height - up), 5, fill=colour)
+        return np.asarray(image, dtype=np.uint8)
+
+    return marked
 
 
 Array = NDArray[np.float64]

@@ -15,6 +15,7 @@ and the discrete Fourier transform gives a_j without leakage and without a windo
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,6 +42,28 @@ PER_PERIOD = 16_384
 
 MARGIN, LEAST_MARGIN, SAMPLES = 2.0, 50e-6, 1201
 """Time before and after in contact times, and at least [s]; samples."""
+
+WORDS = {
+    "time": "time at which mode 1 reaches the gap [s]; of the first touch where ringing made it",
+    "end": "last release [s]",
+    "approach": "approach velocity of mode 1 [m/s]; none where ringing made the touch",
+    "restitution": "restitution τ; none where mode 1 does not come back to the gap",
+    "delay": "time delay [s]; negative where mode 1 would have left the plate before it comes",
+    "kick": "kick of mode 1 over its approach velocity; none where ringing made the touch",
+    "kick_velocity": "kick of mode 1 [m/s]; positive away from the plate",
+    "shift": "jump of the mode-1 tip displacement [m]",
+    "deceleration": "deceleration of mode 1 at the gap [m/s^2]",
+    "impacts": "impacts in the collision",
+    "contact_time": "total time in contact [s]",
+    "first_touch": "time of the first touch [s]",
+    "real_approach": "velocity of the tip at the first touch [m/s]",
+    "ringing": "amplitude of the ringing of higher modes at the tip before the collision [m]",
+    "energy_to_higher_modes": "energy that the higher modes gain [J]",
+    "energy_lost": "energy lost in the contact [J]",
+    "forced_by_ringing": "ringing made the touch; mode 1 alone would not reach the gap",
+    "returns": "mode 1 comes back to the gap",
+}
+"""What the fields of a collision hold, as the columns of a table."""
 
 Array = NDArray[np.float64]
 
@@ -130,11 +153,11 @@ CLEAR, LOUD = 1e-3, 1e-7
 
 @dataclass(frozen=True, kw_only=True)
 class Peak:
-    """A line higher than its neighbours [m or rad], and the mode (from 1) it belongs to."""
+    """A line of the spectrum that is higher than its neighbours."""
 
-    frequency_hz: float
+    frequency_hz: Annotated[float, "frequency [Hz]"]
     amplitude: float
-    mode: int | None
+    mode: Annotated[int | None, "nearest mode; none away from all modes"]
 
 
 def lines_of(signal: Array, duration: float) -> tuple[Array, Array]:
