@@ -167,11 +167,13 @@ def compare(run: Run, rows: Sequence[Transition], parameters: Sequence[Extracted
     close = sum(bool(a and b and 1.0 / NEARLY < a / b < NEARLY) for a, b in ends)
     of_map = sum(one.map == beams[one.frequency_hz].period for one in found)
     if same:
-        where = "at every frequency" if len(same) == len(found) else "at some frequencies only"
-        ends = f"; its orbits end elsewhere at {missed} of them" if (missed := len(found) - close) else ""
-        run.finding(
-            f"Eq. (1) with the beam's restitution and time delay has the beam's period {where}{ends}."
+        where, missed = (
+            "every frequency" if len(same) == len(found) else "some frequencies",
+            len(found) - close,
         )
+        end = f"; its orbits end elsewhere at {missed} of them" if missed else ""
+        words = "Eq. (1) with the beam's restitution and time delay has the beam's period at"
+        run.finding(f"{words} {where}{end}.")
     verdict: Verdict = "agrees" if close == len(found) else "in part" if same else "differs"
     said = f"the beam's period at {len(same)}, its end to a factor of {NEARLY:g} at {close} of {len(found)}"
     note = f"the map with that restitution has the beam's period at {of_map} of them"

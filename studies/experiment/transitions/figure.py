@@ -69,12 +69,15 @@ def panel(axis: Axes, row: Transition, found: Mapping[str, Diagram], letters: bo
         amplitude = 1e3 * (diagram.excess if grazing is None else grazing * (1.0 + diagram.excess))
         settled = diagram.period > 0
         # below grazing, beside the orbit that was born: longer ones with several impacts
-        beside = (diagram.excess < 0.0) & ~np.isin(diagram.period, (1, row.period))
+        beside = (diagram.excess < 0.0) & ~np.isin(diagram.period, (1, row.period or 0))
         moving |= {a for a, kind in zip(amplitude, diagram.kind, strict=True) if kind == "not settled"}
         points = diagram.points[settled] * (1.0 if grazing is None else 1e3)
         plotting.strobe_points(axis, amplitude[settled], points, ~beside[settled], look, f"{way}ward scan")
         if np.any(beside & settled):
-            pale = {"markeredgecolor": plotting.tint(look[0], plotting.PALE), "markerfacecolor": "none"}
+            pale: plotting.Style = {
+                "markeredgecolor": plotting.tint(look[0], plotting.PALE),
+                "markerfacecolor": "none",
+            }
             axis.plot([], [], "o", markersize=look[2], **pale, label="pale: orbit with several impacts")
     for place, value in enumerate(sorted(moving)):
         axis.axvline(value, color="0.75", linewidth=0.5, zorder=1, label="_" if place else "not settled")

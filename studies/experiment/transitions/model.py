@@ -66,8 +66,8 @@ def lowered(row: Transition, strobed: Strobed, excess: float, cycles: int) -> tu
     row = replace(row, period=orbit.period, born=periods)
     if end is not None:
         speed = None if end.orbit is None else abs(end.orbit.speed)
-        found = {"excess_down": end.excess, "ends_by": end.kind, "end_speed": speed}
-        row = replace(row, **found, lost=end.lost, held=end.held)
+        row = replace(row, excess_down=end.excess, ends_by=end.kind, end_speed=speed)
+        row = replace(row, lost=end.lost, held=end.held)
     return row, orbit.end
 
 
