@@ -206,7 +206,8 @@ def branch(
         {"color": colour, "linestyle": "--", "linewidth": 1.0, "label": "unstable"},
         {"color": tint(colour, 0.5), "linestyle": ":", "label": "not an orbit: would touch elsewhere too"},
     )
-    for run in np.split(np.arange(looks.size), np.flatnonzero(np.diff(looks)) + 1):
+    runs = np.split(np.arange(looks.size), np.flatnonzero(np.diff(looks)) + 1)
+    for run in sorted(runs, key=lambda run: int(looks[run[0]])):  # in the order of the legend
         shown = slice(run[0], run[-1] + 2)  # on to the next one, so that the line has no gap
         axes.plot(sideways[shown], upwards[shown], **styles[looks[run[0]]])
 

@@ -24,13 +24,13 @@ CURVES = (
 )
 
 BRANCH = (
-    "One branch of orbits of the beam. When the amplitude is lowered, the stable orbit meets the unstable one "
-    "at the fold and is gone; up to grazing the motion without impacts is stable as well."
+    "One branch of orbits of the beam. When the amplitude is lowered, the stable orbit meets the unstable "
+    "one at the fold and is gone; up to grazing the motion without impacts is stable as well."
 )
 
 BANDS = "Bands of p_m in the plane of α and γ as ρ goes to 0, and the path of the experiment through them."
 
-EVENTS = {"grazing": "touches elsewhere too", "undecided": "event not resolved"}
+EVENTS = {"grazing": "another touch grazes", "undecided": "event not resolved"}
 """Event of a branch -> its name in the picture, where it is another one."""
 
 STYLES: dict[str, dict[str, Any]] = {
@@ -52,8 +52,12 @@ def draw_curves(scene: Scene, rows: Sequence[Folds], *, letters: bool) -> Figure
     shade = {"color": "0.82", "linewidth": 0, "zorder": 0}
     for number, (axis, sign) in enumerate(zip(axes, (1.0, -1.0), strict=True)):
         curves(axis, rows, sign)
-        for edge in edges if letters else ():
-            axis.axvspan(*(edge.upper * unsure), **shade, label="upper edge of a band, letter's error of T")
+        for edge in edges:
+            if letters:
+                words = "upper edge of the band of p$_m$, letter's error of T"
+                axis.axvspan(*(edge.upper * unsure), **shade, label=words)
+            else:
+                axis.axvline(edge.upper, color="0.75", label="upper edge of the band of p$_m$")
         for seen in periods_of(scene) if letters else ():
             axis.axvline(seen, **LETTER, label="letter's Fig. 2: p$_m$ named above")
         plotting.panel(axis, number, ("end of the orbits", "the same, logarithmic")[number])
@@ -94,7 +98,7 @@ def names_of_bands(axes: Sequence[Axes], scene: Scene, edges: Sequence[Band], le
     for edge in edges:
         middle = 0.5 * (max(edge.lower, lowest) + edge.upper)
         if middle < highest:
-            axes[0].text(middle, 0.02, f"p$_{{{edge.period}}}$", **at)
+            axes[0].text(middle, 0.035, f"p$_{{{edge.period}}}$", **at)
 
 
 @plotting.in_house_style
@@ -103,19 +107,23 @@ def draw_branch(rows: Sequence[OnBranch], frequency: float, m: int) -> Figure:
     times the fold is below it."""
     shown = [row for row in rows if row.excess <= 3.0 * abs(min(one.excess for one in rows))]
     figure, axis = plotting.new_figure(height=0.072)
-    excess, speed = (
-        1e2 * np.array([row.excess for row in shown]),
-        1e3 * np.array([row.speed for row in shown]),
+    excess, speed, stable, admissible = (
+        np.array([getattr(row, name) for row in shown])
+        for name in ("excess", "speed", "stable", "admissible")
     )
-    stable, admissible = (
-        np.array([getattr(row, name) for row in shown]) for name in ("stable", "admissible")
-    )
+    excess, speed = 1e2 * excess, 1e3 * speed
     plotting.branch(axis, excess, speed, stable, admissible)
     axis.axvline(0.0, **GUIDE, label="grazing")
     for row in (row for row in shown if row.event):
         place = 1e2 * row.excess, 1e3 * row.speed
         axis.plot(*place, "o", color=BLACK, markersize=3.5)
-        at: plotting.Style = {"textcoords": "offset points", "xytext": (6.0, -3.0), "fontsize": NOTE}
+        left = place[0] > 0.5 * excess.max()
+        at: plotting.Style = {
+            "textcoords": "offset points",
+            "fontsize": NOTE,
+            "ha": "right" if left else "left",
+        }
+        at["xytext"] = (-5.0, -10.0) if left else (6.0, -3.0)
         axis.annotate(EVENTS.get(row.event, row.event), place, **at)
     axis.set_yscale("log")
     axis.set_title(f"p$_{{{m}}}$ of the beam at {frequency:.2f} Hz", loc="left")
@@ -137,7 +145,13 @@ def draw_bands(scene: Scene, path: Sequence[NordmarkMap], *, letters: bool) -> F
         gamma = np.exp(-np.concatenate([rates, rates[::-1]]) / f)
         alpha = 2.0 * np.sqrt(gamma) * np.cos(2.0 * np.pi / (f * mode.free_period_s))
         axis.fill(alpha, gamma, color=plotting.PALETTE[m % 6 + 1], alpha=0.35, linewidth=0.4)
-        axis.text(0.5 * (alpha[79] + alpha[80]), 1.015, f"p$_{{{m}}}$", fontsize=NOTE, ha="center")
+        axis.text(
+            0.5 * (alpha[79] + alpha[80]),
+            1.055 if m == 7 else 1.015,
+            f"p$_{{{m}}}$",
+            fontsize=NOTE,
+            ha="center",
+        )
     low, high = (corresponding(scene, f) for f in FREQUENCIES_HZ)
     words = f"path from {low:.4g} to {high:.4g} Hz"
     axis.plot([p.alpha for p in path], [p.gamma for p in path], color="black", linewidth=1.4, label=words)
