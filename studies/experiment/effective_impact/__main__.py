@@ -127,9 +127,9 @@ def judge(run: Run, at: Approach, orbits: Sequence[Approach], floors: Sequence[F
         "Whatever the mass of the ball and the loss in the contact, a first collision leaves mode 1 a "
         f"restitution of {written(lossy, 2)} or more{above}."
     )
-    if lost:
-        run.finding("On some settled orbits the ringing of the collision before keeps mode 1 from coming back.")
-    elif returned:
-        low = written(min(returned), 2)
-        run.finding(f"On settled orbits the collision before still rings, and the restitution falls to {low}.")
-    run.finding(f"A first collision delays mode 1 by {1e3 * at.delay_s:.2f} ms.")
+    if returned:
+        run.finding(
+            "On settled orbits, where the collision before still rings, the restitution is as low as "
+            f"{written(min(returned), 2)} at some masses."
+        )
+    run.finding(f"A first collision delays mode 1 by {written(1e3 * at.delay_s, 2)} ms.")

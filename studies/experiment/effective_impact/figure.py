@@ -14,9 +14,9 @@ from studies.shell import plotting
 from studies.shell.plotting import PAGE, PALETTE
 
 AXES = {
-    "restitution": ("loss of mode 1", "restitution τ", "1", 1.0),
+    "restitution": ("restitution", "restitution τ", "1", 1.0),
     "delay_s": ("time delay", "delay", "ms", 1e3),
-    "kick": ("kick of mode 1", "kick / approach velocity", "1", 1.0),
+    "kick": ("kick", "kick / approach velocity", "1", 1.0),
 }
 """Column of the rows -> title, quantity, unit, factor to that unit."""
 
@@ -59,7 +59,7 @@ def panels(rows: Sequence[Approach], curve: str, quantity: str, arc_of: str) -> 
         plotting.panel(axis, place, title)
     chosen = select(rows, curve, arc_of)
     arc = [1e3 * row.arc_s for row in chosen]
-    axes[1].plot([row.value for row in chosen], arc, **plotting.GUIDE, label=f"v/a until the tip turns by itself, {arc_of}")
+    axes[1].plot([row.value for row in chosen], arc, **plotting.GUIDE, label=f"v/a: time to turn, {arc_of}")
     return figure, list(axes)
 
 
@@ -68,10 +68,10 @@ def speed(rows: Sequence[Approach], letters: bool) -> Figure:
     """The curves against the excess; shaded, for the letter's spring, below its amplitude stability."""
     figure, axes = panels(rows, "speed", plotting.EXCESS, "Hertz")
     hertz = select(rows, "speed", "Hertz")
-    floor, words = [math.sqrt(row.contact_s / row.arc_s) for row in hertz], "√(contact time · a/v), Hertz"
+    floor, words = [math.sqrt(row.contact_s / row.arc_s) for row in hertz], "√(contact time · a/v)"
     axes[0].plot([row.value for row in hertz], floor, color="0.45", linewidth=0.8, label=words)
     axes[1].set_yscale("log")
-    least, most = hertz[0].value / 1.2, 1.2 * hertz[-1].value
+    least, most = hertz[0].value / 1.6, 1.6 * hertz[-1].value
     for axis, bounds in zip(axes, ((0.0, 1.05), (1e-2, 1e1), (0.0, 1.1)), strict=True):
         axis.set_xscale("log")
         if letters:
@@ -80,7 +80,7 @@ def speed(rows: Sequence[Approach], letters: bool) -> Figure:
         axis.set(xlim=(least, most), ylim=bounds)
     if letters:
         plotting.mark_letter(axes[0].yaxis, letter.RESTITUTION, words="letter, τ ≈ 0.1", along=0.02)
-    plotting.legend_below(figure, axes, 3, handlelength=3.0)
+    plotting.legend_below(figure, axes, 2, handlelength=3.0)
     return figure
 
 
@@ -88,7 +88,7 @@ def speed(rows: Sequence[Approach], letters: bool) -> Figure:
 def mass(rows: Sequence[Approach], letters: bool) -> Figure:
     """The curves against the tip mass, beside them the collisions on settled orbits."""
     figure, axes = panels(rows, "mass", MASS, "excess 0.013")
-    looks = ((True, "x", "settled orbit, excess 0.013"), (False, "|", "the same, mode 1 does not return"))
+    looks = ((True, "x", "settled orbit, excess 0.013"), (False, "|", "the same, no return of mode 1"))
     for returns, mark, name in looks:
         chosen = [row for row in on_orbits(rows) if row.returns is returns]
         heights = [row.restitution if returns else 0.0 for row in chosen]

@@ -189,7 +189,7 @@ def cases_of(spring: Spring, masses: Sequence[Spring], fine: Spring, every: int 
     is Hertz's, with other tip masses."""
     own, hertz = contact_law_of(spring.scene), hertz_of(spring.scene)
     other: list[tuple[str, Spring, ContactLaw]] = [] if own == hertz else [(OWN, spring, own)]
-    lines = [*other, (HERTZ, spring, hertz), ("bare tip, Hertz", masses[0], hertz)]
+    lines = [*other, (HERTZ, spring, hertz), ("Hertz, no tip mass", masses[0], hertz)]
     for name, one, law in lines:
         for excess in EXCESSES[::every]:
             yield one.case("speed", name, law, value=excess, excess=excess)
