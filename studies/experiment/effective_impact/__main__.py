@@ -76,7 +76,9 @@ def effective_impact(scene: Scene, run: Run) -> Mapping[str, object]:
     run.table("collisions", rows, "One collision a row, and what it does to mode 1.", of=Approach, show=())
     searches = [select(rows, "search", name) for name in series_of(rows, "search")]
     floors = [floor for search in searches if (floor := floor_of(search)) is not None]
-    run.table("floors", floors, "Smallest restitution over the tip mass, by restitution of the contact.", of=Floor)
+    run.table(
+        "floors", floors, "Smallest restitution over the tip mass, by restitution of the contact.", of=Floor
+    )
     from studies.experiment.effective_impact import figure  # matplotlib is slow to import
 
     if select(rows, "mass"):

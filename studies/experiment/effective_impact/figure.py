@@ -20,7 +20,7 @@ AXES = {
 }
 """Column of the rows -> title, quantity, unit, factor to that unit."""
 
-MASS = "tip mass / mass of the leaf"
+MASS = "tip mass / leaf mass"
 
 SPEEDS = (
     "Restitution, delay and kick against the excess above grazing. Kick and loss fade towards grazing, where "
@@ -75,7 +75,12 @@ def speed(rows: Sequence[Approach], letters: bool) -> Figure:
     for axis, bounds in zip(axes, ((0.0, 1.05), (1e-2, 1e1), (0.0, 1.1)), strict=True):
         axis.set_xscale("log")
         if letters:
-            band = {"color": "0.92", "zorder": -1, "linewidth": 0, "label": "letter: stability of the amplitude"}
+            band = {
+                "color": "0.92",
+                "zorder": -1,
+                "linewidth": 0,
+                "label": "letter: stability of the amplitude",
+            }
             axis.axvspan(least, letter.AMPLITUDE_STABILITY, **band)
         axis.set(xlim=(least, most), ylim=bounds)
     if letters:

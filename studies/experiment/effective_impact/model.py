@@ -80,7 +80,9 @@ class Approach:
     contact_s: Annotated[float, "time in contact [s]"] = math.nan
     arc_s: Annotated[float, "time v/a to the top of the arc beyond the gap [s]"] = math.nan
     impacts: Annotated[int, "impacts in the collision"] = 0
-    forced_by_ringing: Annotated[bool, "whether ringing alone reaches the gap; the kick is then in m/s"] = False
+    forced_by_ringing: Annotated[bool, "whether ringing alone reaches the gap; the kick is then in m/s"] = (
+        False
+    )
 
     @property
     def returns(self) -> bool:

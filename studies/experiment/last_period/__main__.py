@@ -67,7 +67,9 @@ def last_period(
     ]
     after = run.attempt(partial(transitions_after, scene, base), changes_of(scene, run.quick), "changes")
     rows = base + [row for found in after for row in found or ()]
-    run.table("sensitivity", rows, "Period born at grazing, and fold, after each change.", of=changes.Transition)
+    run.table(
+        "sensitivity", rows, "Period born at grazing, and fold, after each change.", of=changes.Transition
+    )
     from studies.experiment.last_period import figure  # matplotlib is slow to import
 
     run.figure("fold_against_parameter", figure.draw_tornado(rows), figure.TORNADO)
@@ -112,7 +114,9 @@ def pair_intervals(scene: Scene, run: Run) -> list[pairs.Interval]:
     off = next(row.missed_by_s for row in rows if row.pairs == "all" and row.excess == 0.0)
     if off:
         size, way = f"{1e3 * abs(off):.2f} ms", "shorter" if off > 0.0 else "longer"
-        run.finding(f"In the map the letter's six periods need a free period at least {size} {way} than printed.")
+        run.finding(
+            f"In the map the six periods of the letter need a free period {size} {way} than its error allows."
+        )
     return rows
 
 
@@ -125,14 +129,14 @@ def judge(
         noise.name: next((m for m, apart in of_eq_1 if not apart[key_of(noise)] >= 1.0), None)
         for noise in noises
     }
-    first, kind = merged[noises[0].name], noises[0].name
+    kind, first = next(iter(merged.items()))
     run.verdict(
         "last_period",
         "agrees" if first is not None and 0 <= first - HIGHEST <= 1 else "in part",
         found=", ".join(f"{f'p{m}' if m else 'none'} ({name})" for name, m in merged.items()),
         note="first period whose closest strobe points merge in noise of the amplitude's stability",
     )
-    noisy = f"In noise of the drive amplitude ({kind})" 
+    noisy = f"In {f'a {kind}' if noises[0].correlation_s else 'white noise'} of the drive amplitude"
     if of_eq_1 and first is None:
         run.finding(f"{noisy} the strobe points of Eq. (1) stay apart for every period that was tried.")
     elif first is not None:

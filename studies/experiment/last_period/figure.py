@@ -35,7 +35,7 @@ def draw_tornado(rows: Sequence[Transition]) -> Figure:
     changes = {(row.parameter, row.sign): row.change for row in after}
     columns = min(3, len(before))
     lines = math.ceil(len(before) / columns)
-    height = (0.016 + 0.0056 * len(parameters)) * lines + 0.014
+    height = max((0.019 + 0.0044 * len(parameters)) * lines + 0.014, 0.145)  # a slide needs the width
     shared = {"squeeze": False, "sharey": True, "sharex": True}
     figure, axes = plotting.new_figure(lines, columns, width=PAGE, height=height, **shared)
     for axis in axes.flat[len(before) :]:
@@ -45,20 +45,22 @@ def draw_tornado(rows: Sequence[Transition]) -> Figure:
         for row in after:
             if row.frequency_hz == base.frequency_hz and row.parameter in parameters:
                 draw_change(axis, row, base.fold if deep else None, parameters.index(row.parameter))
-        words = f"hysteresis {written(-(base.fold or 0.0), 2)}" if deep else "no hysteresis"
-        plotting.panel(axis, number, f"{base.frequency_hz:.2f} Hz, p$_{{{base.m}}}$: {words}")
+        plotting.panel(axis, number, f"{base.frequency_hz:.2f} Hz, p$_{{{base.m}}}$")
+        words = f"without: {written(-(base.fold or 0.0), 2)}" if deep else "without a change: none"
+        axis.text(
+            0.99, -0.95, words, transform=axis.get_yaxis_transform(), ha="right", va="center", size=NOTE
+        )
         axis.axvline(1.0, color="0.3", linewidth=0.7, zorder=3)
-        axis.set(xscale="log", xlim=(LEFT, RIGHT), ylim=(-0.6, len(parameters) - 0.4))
+        axis.set(xscale="log", xlim=(LEFT, RIGHT), ylim=(-1.4, len(parameters) - 0.4))
         axis.set_xticks([0.25, 0.5, 1.0, 2.0, 4.0], ["0.25", "0.5", "1", "2", "4"])
         axis.minorticks_off()
         both = [", ".join(changes[p, way] for way in WAYS if (p, way) in changes) for p in parameters]
-        names = [f"{name}\n{sizes}" for name, sizes in zip(parameters, both, strict=True)]
+        names = [f"{name} {sizes}" for name, sizes in zip(parameters, both, strict=True)]
         axis.set_yticks(range(len(parameters)), names)
     for axis in axes[-1]:
-        plotting.label(axis.xaxis, "hysteresis / (hysteresis before)")
-    for axis in axes[:, 0]:
-        plotting.label(axis.yaxis, "changed parameter")
-    plotting.legend_below(figure, axes.flat, 3)
+        plotting.label(axis.xaxis, "factor on the hysteresis")
+    figure.supylabel("changed parameter")
+    plotting.legend_below(figure, axes.flat, 5)
     return figure
 
 

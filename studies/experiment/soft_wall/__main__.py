@@ -79,7 +79,9 @@ def soft_wall(
     judge_wall(run, doublings)
     if beam and beam.square_root_from is not None:
         end = written(beam.square_root_from, 2)
-        run.finding(f"Below an excess of {end} the kick of the beam, with Hertz contact, is no square root.")
+        run.finding(
+            f"A Hertz contact smooths the square root in the kick of the beam below an excess of {end}."
+        )
     if beam and scene.contact.law == "hertz":
         judge_beam(run, beam)
     return {"rows": doublings, "beam": beam}
@@ -101,7 +103,9 @@ def judge_wall(run: Run, doublings: Sequence[Doubling]) -> None:
     )
     most = f"an excess of {written(max(row[2] for row in found), 2)}"
     if len(first) > 1 and falls:
-        run.finding(f"The softer the wall, the larger the amplitude at which p1 doubles its period: up to {most}.")
+        run.finding(
+            f"The softer the wall, the larger the amplitude at which p1 doubles its period: up to {most}."
+        )
     else:
         run.finding(f"At a soft wall p1 doubles its period at {most} or less.")
 
@@ -113,7 +117,9 @@ def judge_beam(run: Run, beam: Beam) -> None:
         return
     below, loss = "within what the letter could resolve", f"p1 doubles its period at {written(end, 2)}"
     if lost < stable:
-        below = f"{stable / lost:.0f} times below the letter's amplitude stability, which is why it was not seen"
+        below = (
+            f"{stable / lost:.0f} times below the letter's amplitude stability, which is why it was not seen"
+        )
     if beam.turns:
         loss = (
             f"p1 loses its stability at {written(lost, 2)} by a complex pair of multipliers; a multiplier "

@@ -133,7 +133,9 @@ def effect_of_noise(
     met = [row for row in rows if np.isfinite(row.median)]
     whole = [row for row in met if row.map is not None and row.fold > chosen.stability]
     if not whole:
-        run.finding("In this noise of the drive amplitude no hysteresis of Eq. (1) can be compared with the map.")
+        run.finding(
+            "In this noise of the drive amplitude no hysteresis of Eq. (1) can be compared with the map."
+        )
         return {"hidden": []}
     shift = np.array([row.median - row.fold for row in whole])
     part = np.abs(shift) / (np.abs(shift) + np.abs([row.fold - (row.map or 0.0) for row in whole]))
@@ -143,7 +145,9 @@ def effect_of_noise(
     ]
     change, share = float(np.median(shift)), float(np.median(part))
     way = "lowers" if change < 0.0 else "raises"
-    run.finding(f"{KINDS[chosen.correlation_s > 0.0]} {way} the observed hysteresis by {written(abs(change), 2)}.")
+    run.finding(
+        f"{KINDS[chosen.correlation_s > 0.0]} {way} the observed hysteresis by {written(abs(change), 2)}."
+    )
     run.finding(
         f"Noise makes {share:.0%} of the difference between the observed hysteresis and that of the map; "
         "the truncation of the map makes the rest."

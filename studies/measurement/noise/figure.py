@@ -16,8 +16,8 @@ from studies.shell.plotting import BLACK, BLUE, GUIDE, LETTER, PAGE, VERMILION, 
 from studies.shell.scene import Scene, corresponding
 
 OBSERVED = (
-    "Hysteresis against the drive frequency as an observer would have measured it in scans of Eq. (1), as far "
-    "as a scan from above grazing reaches p_m, beside the folds of the map and of Eq. (1) without noise."
+    "Hysteresis against the drive frequency as an observer would have measured it by scans of Eq. (1), where "
+    "a scan from above grazing reaches p_m, beside the folds of the map and of Eq. (1) without noise."
 )
 
 
