@@ -70,7 +70,7 @@ S = TypeVar("S")
 
 def numbers_in(sentence: str) -> list[str]:
     """The numbers of a sentence; p10, Eq. (1), Fig. 2, mode 1 and note [11] are names."""
-    return re.findall(r"\d[\d.,]*(?:e[-+]?\d+)?", NAMES.sub("", sentence))
+    return re.findall(r"\d[\d.,]*(?:e[-+]?\d+| × 10)?", NAMES.sub("", sentence))
 
 
 @dataclass(kw_only=True)
