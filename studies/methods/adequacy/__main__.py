@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from studies.methods.adequacy.models import EQ_1, Models
 from studies.methods.adequacy.search import LeastModel, Search
@@ -107,8 +107,11 @@ def draw(rows: Sequence[LeastModel]) -> Figure:
                 if over > WIDEST:
                     look |= {"marker": ">", "color": "0.4", "label": "beyond the axis"}
                 axis.plot(min(over, WIDEST), place, **look)
-            across = axis.get_yaxis_transform()
-            axis.text(1.04, place, row.least, transform=across, va="center", fontsize=plotting.NOTE)
+        for place, words in enumerate([*(row.least.removeprefix("beam, ") for row in shown), "least model:"]):
+            beside: dict[str, Any] = {"textcoords": "offset points", "va": "center"}
+            axis.annotate(
+                words, (1.0, place), (9.0, 0.0), axis.get_yaxis_transform(), fontsize=plotting.NOTE, **beside
+            )
         axis.axvline(1.0, **plotting.GUIDE, label="tolerance")
         axis.set_xlim(0.0, WIDEST)
         axis.set_yticks(range(len(shown)), [f"{row.quantity}, {row.frequency_hz:.2f} Hz" for row in shown])

@@ -88,7 +88,9 @@ class LeastModel(Choice):
     tolerance: Annotated[float, "tolerance"]
     reached: Annotated[bool, "whether a model is within the tolerance; if not, the row is of the reference"]
     error: Annotated[float, "error; with that of the reference; none where the reference has no answer"]
-    error_one_less: Annotated[float | None, "error of the best model a step smaller, without that of the reference"]
+    error_one_less: Annotated[
+        float | None, "error of the best model a step smaller, without that of the reference"
+    ]
     parts: Annotated[Mapping[str, float], "part of the error; what this simplification changes alone"]
     least: Annotated[str, "least model"]
 
