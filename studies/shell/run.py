@@ -211,9 +211,9 @@ class Run:
 
         columns = columns_of(of, rows, words)
         shown = list[tuple[str, Callable[[Any], object]]]()
-        for name in dict.fromkeys([one.field for one in columns] if show is None else show):
-            own = [(one.name, one.cell) for one in columns if one.field == name]
-            shown += own or [(name, attrgetter(name))]  # a property is text for a person
+        for field_name in dict.fromkeys([one.field for one in columns] if show is None else show):
+            own = [(one.name, one.cell) for one in columns if one.field == field_name]
+            shown += own or [(field_name, attrgetter(field_name))]  # a property is text for a person
         if shown:
             table = Table(title=caption, title_justify="left", box=None, pad_edge=False)
             for heading, _ in shown:
