@@ -1,1 +1,1 @@
-"""The experiment of the letter: its figures, its claims, and what lies behind them."""
+"""The experiment: its figures, its claims, and what lies behind them."""

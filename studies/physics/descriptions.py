@@ -17,8 +17,9 @@ parameters) or to all modes (kicks), and by shooting (beam).
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from functools import partial
-from typing import Any, ParamSpec, TypeVar
+from typing import Annotated, Any, ParamSpec, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -98,6 +99,43 @@ def up_and_down(strobed: Strobed, excesses: NDArray[np.float64], **settings: Any
     quiet = strobed.at(float(excesses[0]) if excesses[0] < 0.0 else BELOW).steady()
     up = orbit_diagram(strobed, excesses, quiet, **settings)
     return {"up": up, "down": orbit_diagram(strobed, excesses[::-1], up.end, **settings)}
+
+
+@dataclass(frozen=True, kw_only=True)
+class StrobePoint:
+    """A strobed point of a scan: one period of a settled motion, all that was recorded of another."""
+
+    frequency_hz: float
+    description: str
+    direction: Annotated[str, "direction of the scan"]
+    amplitude: Annotated[float, "drive amplitude [m]"]
+    excess: float
+    period: Annotated[int, "period m; 0 where the motion did not settle"]
+    strobe: Annotated[int, "number of the strobe"]
+    value: Annotated[float, "strobed read-out; m, or rad for a rotation, or for the map its x, a pure number"]
+
+
+def strobe_points_of(
+    frequency: float, description: str, grazing: float, ways: Mapping[str, Diagram]
+) -> list[StrobePoint]:
+    """The points of scans by their directions; `grazing` is the grazing amplitude [m]."""
+    return [
+        StrobePoint(
+            frequency_hz=frequency,
+            description=description,
+            direction=way,
+            amplitude=grazing * (1.0 + excess),
+            excess=excess,
+            period=period,
+            strobe=number,
+            value=value,
+        )
+        for way, scan in ways.items()
+        for excess, period, points in zip(
+            scan.excess.tolist(), scan.period.tolist(), scan.points.tolist(), strict=True
+        )
+        for number, value in enumerate(points[: period or None])
+    ]
 
 
 def born_and_lowered(

@@ -22,6 +22,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Annotated
 
 import numpy as np
 from scipy.interpolate import PchipInterpolator
@@ -95,22 +96,17 @@ def fold_of_kicks(kicks: KickFamily) -> float | None:
 
 @dataclass(frozen=True, kw_only=True)
 class Extracted:
-    """The two parameters at the approach speed [m/s] of a settled orbit p_m with one impact.
-
-    `ringing_left`: what is left of the ringing of a higher mode when the tip comes back, exp(-c m/(2 f));
-    `fold`: where the orbit ends, from the kicks of the beam's collisions; `map` and `fold_of_map`: the period
-    that the map with that restitution gives birth to at the same excess (0: not settled), and its fold.
-    """
+    """The two parameters at the approach speed of a settled orbit p_m with one impact."""
 
     frequency_hz: float
     m: int
-    approach_m_per_s: float
+    approach_m_per_s: Annotated[float, "approach speed [m/s]"]
     restitution: float
-    delay_s: float
-    ringing_left: float
-    fold: float | None
-    map: int
-    fold_of_map: float | None
+    delay_s: Annotated[float, "time delay [s]"]
+    ringing_left: Annotated[float, "ringing left when the tip comes back; of a higher mode, exp(-c m/(2 f))"]
+    fold: Annotated[float | None, "end of the orbit, F/F_g − 1; from the kicks of the beam's collisions"]
+    map: Annotated[int, "born period of the map with that restitution; 0 where it did not settle"]
+    fold_of_map: Annotated[float | None, "end of the orbit of that map, F/F_g − 1"]
 
 
 def extracted(

@@ -82,6 +82,14 @@ class Column:
         )
 
 
+def usual_words(name: str) -> str:
+    """The words of a field that gives none: those of its name, with the unit at its end."""
+    ends = [unit for unit, end in UNITS.items() if name.endswith(f"_{end}")]
+    unit = max(ends, key=lambda unit: len(UNITS[unit]), default="")
+    stem = name.removesuffix(f"_{UNITS[unit]}" if unit else "").replace("_", " ")
+    return USUAL.get(name, f"{stem} [{unit}]" if unit else stem)
+
+
 def columns_of(kind: type, rows: Sequence[object], words: Mapping[str, str] | None = None) -> list[Column]:
     """The columns of rows that are instances of the dataclass `kind`; `words` are for those that say none."""
     if not dataclasses.is_dataclass(kind) or {type(row) for row in rows} - {kind}:
@@ -89,7 +97,7 @@ def columns_of(kind: type, rows: Sequence[object], words: Mapping[str, str] | No
     hints, found = typing.get_type_hints(kind, include_extras=True), list[Column]()
     for name in (entry.name for entry in dataclasses.fields(kind)):
         said = [part for part in getattr(hints[name], "__metadata__", ()) if isinstance(part, str)]
-        text = (words or {}).get(name) or (said[0] if said else USUAL.get(name, name.replace("_", " ")))
+        text = (words or {}).get(name) or (said[0] if said else usual_words(name))
         match = WORDS.fullmatch(text)
         if match is None:
             raise ValueError(f"{name} of {kind.__name__} has the words {text!r}, not: words [unit]; note")
@@ -119,6 +127,14 @@ def written(value: float, digits: int = 4) -> str:
         return minus(plain.rstrip("0").rstrip(".") if "." in plain else plain)
     mantissa, _, power = f"{value:.{digits - 1}e}".partition("e")
     return f"{minus(mantissa.rstrip('0').rstrip('.'))} × 10{str(int(power)).translate(SUPERSCRIPTS)}"
+
+
+def prefixed(size: float, unit: str) -> tuple[float, str]:
+    """Scale and unit that a person would choose for a number of this size."""
+    powers = (9, 6, 3, 0) if unit[0] in "NP" else (0, -3, -6) if unit in ("s", "m", "kg") else (0,)
+    power = next((power for power in powers if size >= 10.0**power), powers[-1] if size else 0)
+    found = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "\u00b5"}[power] + unit
+    return 10.0**power, {"mkg": "g", "\u00b5kg": "mg"}.get(found, found)
 
 
 def minus(text: str) -> str:

@@ -26,7 +26,7 @@ import numpy as np
 
 from studies import ROOT, __version__
 
-SCHEMA = 2
+SCHEMA = 3
 """Number of the layout of summary.json, manifest.json and the JSON on standard output."""
 
 

@@ -196,6 +196,22 @@ def strobe_points(
         )
 
 
+def branch(
+    axes: Axes, sideways: Array, upwards: Array, stable: Array, admissible: Array, colour: str = BLUE
+) -> None:
+    """A branch of orbits in its order: solid where `stable`, else dashed; dotted where not `admissible`."""
+    looks = np.where(admissible, np.where(stable, 0, 1), 2)
+    styles = (
+        {"color": colour, "linestyle": "-", "linewidth": 1.4, "label": "stable"},
+        {"color": colour, "linestyle": "--", "linewidth": 1.0, "label": "unstable"},
+        {"color": tint(colour, 0.5), "linestyle": ":", "label": "not an orbit: would touch elsewhere too"},
+    )
+    runs = np.split(np.arange(looks.size), np.flatnonzero(np.diff(looks)) + 1)
+    for run in sorted(runs, key=lambda run: int(looks[run[0]])):  # in the order of the legend
+        shown = slice(run[0], run[-1] + 2)  # on to the next one, so that the line has no gap
+        axes.plot(sideways[shown], upwards[shown], **styles[looks[run[0]]])
+
+
 def tint(colour: str, share: float) -> str:
     """The colour with so much of it left in white, for areas."""
     red, green, blue = (1.0 - share * (1.0 - part) for part in to_rgb(colour))

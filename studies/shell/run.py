@@ -45,12 +45,19 @@ from studies.shell.files import (
     versions,
     write_atomically,
 )
-from studies.shell.scene import Scene, of_the_letter
+from studies.shell.scene import Scene, of_the_letter, size_in_words, spring_in_words
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Verdict = Literal["agrees", "in part", "differs", "fitted", "not printed"]
+
+OWN_FILES = {
+    "summary": "What was found.",
+    "columns": "What each file and each column holds.",
+    "manifest": "The command, the scene, versions and commit of these results.",
+}
+"""What every study leaves."""
 
 MOST_FINDINGS = 3
 
@@ -63,7 +70,7 @@ S = TypeVar("S")
 
 def numbers_in(sentence: str) -> list[str]:
     """The numbers of a sentence; p10, Eq. (1), Fig. 2, mode 1 and note [11] are names."""
-    return re.findall(r"\d[\d.,]*(?:e[-+]?\d+)?", NAMES.sub("", sentence))
+    return re.findall(r"\d[\d.,]*(?:e[-+]?\d+| × 10)?", NAMES.sub("", sentence))
 
 
 @dataclass(kw_only=True)
@@ -211,9 +218,9 @@ class Run:
 
         columns = columns_of(of, rows, words)
         shown = list[tuple[str, Callable[[Any], object]]]()
-        for field_name in dict.fromkeys([one.field for one in columns] if show is None else show):
-            own = [(one.name, one.cell) for one in columns if one.field == field_name]
-            shown += own or [(field_name, attrgetter(field_name))]  # a property is text for a person
+        for seen in dict.fromkeys([one.field for one in columns] if show is None else show):
+            own = [(one.name, one.cell) for one in columns if one.field == seen]
+            shown += own or [(seen, attrgetter(seen))]  # a property is text for a person
         if shown:
             table = Table(title=caption, title_justify="left", box=None, pad_edge=False)
             for heading, _ in shown:
@@ -249,7 +256,7 @@ class Run:
         """
         if point not in letter.POINTS or letter.POINTS[point].study != self.study:
             raise KeyError(f"{self.study} judges no point {point!r} of letter.POINTS")
-        about = {"verdict": verdict, "found": found, "note": note, "figure": figure}
+        about: dict[str, object] = {"verdict": verdict, "found": found, "note": note, "figure": figure}
         self._verdicts |= {point: about} if self.letters else {}
 
     def finding(self, sentence: str) -> None:
@@ -269,7 +276,7 @@ class Run:
         return time.perf_counter() - self._begun
 
     def close(self, status: str, results: Mapping[str, object]) -> dict[str, object]:
-        """Write summary.json and manifest.json; returns the summary."""
+        """Write what every study leaves; returns the summary."""
         self.closed = True
         settings = {**self._settings, "workers": self.workers, "executor": self.executor}
         common = {
@@ -292,14 +299,16 @@ class Run:
         if taken := sorted(summary.keys() & results.keys()):
             raise ValueError(f"{self.study} returns {', '.join(taken)}, keys that every summary has already")
         summary |= results
-        if status != "interrupted" and not self.failures and "rows" not in results:
+        if status == "done" and "rows" not in results:
             raise ValueError(f"{self.study} returns no rows")
-        self.json("summary", summary, "What was found.")
-        self.path("manifest.json", "The command, scene, versions and commit of these results.")
-        self.json("columns", self._holds, "What each file and each column holds.")
+        for name, holds in OWN_FILES.items():
+            self.path(f"{name}.json", holds)
         manifest = {
             **common,
             "command": self.command,
+            "spring": spring_in_words(self.scene),
+            "size": size_in_words(self.scene),
+            "of_the_letter": self.letters,
             "parameters": self.scene.values(),
             "versions": versions(),
             "git": git_state(),
@@ -308,7 +317,8 @@ class Run:
             "wall_time_s": wall_time,
             "files": self.files,
         }
-        self.json("manifest", manifest, "The command, scene, versions and commit of these results.")
+        for (name, holds), value in zip(OWN_FILES.items(), (summary, self._holds, manifest), strict=True):
+            self.json(name, value, holds)
         return {**summary, "folder": self.folder, "wall_time_s": wall_time}
 
 

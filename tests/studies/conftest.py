@@ -14,9 +14,11 @@ import matplotlib
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
+from page_judge import assert_fit
 
 from beam import ModalModel
 from studies.shell import plotting
+from studies.shell.page import write_page
 from studies.shell.programs import module_of
 from studies.shell.run import Run
 from studies.shell.scene import Scene, model_of, read_scene
@@ -58,9 +60,21 @@ def study_of(name: str) -> Study:
 
 
 def assert_complete(name: str, folder: Path, summary: dict, manifest: dict) -> None:
-    """A study that ends well leaves every file that it lists, a table, a figure and a summary."""
+    """A study that ends well leaves every file that it lists, a table, a figure and a summary; what each file
+    and each column holds; one value in each cell; one to three findings; a page."""
     files = [folder / file for file in manifest.get("files", [])]
     assert all(path.exists() for path in files)
+    holds = json.loads((folder / "columns.json").read_text())
+    assert set(holds) == set(manifest["files"]) and all(about["holds"] for about in holds.values())
+    for path in (path for path in files if path.suffix == ".csv"):
+        with path.open(newline="") as stream:
+            heading, *rows = csv.reader(stream)
+        assert heading == [
+            column["name"] for column in holds[path.name].get("columns", [{"name": heading[0]}])
+        ]
+        assert not [cell for row in rows for cell in row if cell[:1] in ("[", "{", "(")], path
+    assert isinstance(summary["rows"], list) and 1 <= len(summary["findings"]) <= 3
+    assert_fit(write_page(folder.parent)[0])
     assert any(path.suffix == ".csv" and path.stat().st_size > 20 for path in files)
     assert any(path.suffix == ".png" and path.stat().st_size > 2000 for path in files) or name == "calibrate"
     assert summary["study"] == name and not any(key.startswith("wall") for key in summary)

@@ -72,8 +72,8 @@ def test_a_failure_is_told_and_what_is_stored_is_not_run_again(run_all, tmp_path
 def test_a_sweep_goes_on_where_it_was_interrupted_but_not_with_columns_of_another_source(
     tmp_path, stored, arguments
 ):
-    scene, given = read_scene("letter"), Namespace(out=str(tmp_path), quick=False, fresh=False)
-    same = fingerprint(scene.values(), {"quick": False, **chart.defaults(False)})
+    scene, given = read_scene("letter"), Namespace(out=str(tmp_path), quick=False, style="paper", fresh=False)
+    same = fingerprint(scene.values(), {"quick": False, "style": "paper", **chart.defaults(False)})
     assert every_study.arguments_of("chart", scene, given, []) == ["--fresh"]
     stored = {"fingerprint": same, **stored} if isinstance(stored, dict) else stored
     (tmp_path / "chart").mkdir()

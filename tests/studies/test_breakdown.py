@@ -105,5 +105,8 @@ def test_small_form(run_study):
     assert (0.004, 1.0) in [(cell["tip_mass_kg"], cell["higher_damping"]) for cell in six]
     assert ran.summary["found"]["tip_mass_kg"] == 0.004
     assert ran.verdicts == dict.fromkeys(("breakdown", "breakdown_p3", "island"), "in part")
-    stored = ran.arrays("breakdown")
-    assert stored["beam_up_points"].shape == (stored["beam_up_excess"].size, letter.STROBE_POINTS)
+    points = [row for row in ran.rows("breakdown") if row["description"] == "beam"]
+    kept = {row["excess"]: sum(one["excess"] == row["excess"] for one in points) for row in points}
+    assert {row["direction"] for row in points} == {"up", "down"} and max(
+        kept.values()
+    ) <= 2 * letter.STROBE_POINTS

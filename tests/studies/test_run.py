@@ -13,7 +13,8 @@ import signal
 import subprocess
 import sys
 import time
-from dataclasses import dataclass, fields
+from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -23,6 +24,7 @@ import pytest
 from beam import InvalidValue
 from contact import NotPeriodic
 from studies import ROOT
+from studies.shell.columns import UNITS, columns_of
 from studies.shell.files import write_atomically
 from studies.shell.programs import names
 from studies.shell.scene import Scene, of_the_letter, read_scene
@@ -30,14 +32,14 @@ from studies.shell.study import Run, study
 
 
 @dataclass(frozen=True, kw_only=True)
-class Row:
+class Cell:
     """A row with every kind of cell."""
 
     number: int
-    value: float | None
+    value: Annotated[float | None, "speed of the ball [m/s]; none at rest"]
     word: str
     good: bool
-    pair: tuple[float, float]
+    pair: Mapping[str, float]
 
 
 FAULTS = {error.__name__: error for error in (ValueError, TypeError, IndexError, KeyError, StopIteration)}
@@ -64,18 +66,20 @@ def small(
     if what == "contact":
         raise NotPeriodic(time=0.0, gap=0.0, velocity=0.0, detail="no orbit")
     if what.startswith("interrupt"):
-        run.text("kept.txt", "kept")
+        run.text("kept.txt", "kept", "A word.")
         try:
             raise KeyboardInterrupt
         finally:
             if what == "interrupt of a file":
                 raise ValueError("a file that was being written cannot be closed")
     rows = [
-        Row(number=n, value=None if n else np.float64(np.nan), word="a,b", good=n > 0, pair=(0.0, float(n)))
+        Cell(
+            number=n, value=None if n else np.float64(np.nan), word="a,b", good=n > 0, pair={"low": float(n)}
+        )
         for n in run.track(range(points), "rows")
     ]
-    run.table("rows", rows, "Rows.", of=Row)
-    run.arrays("numbers", x=np.arange(3.0))
+    run.table("rows", rows, "Rows.", of=Cell)
+    run.arrays("numbers", "x [m].", x=np.arange(3.0))
     if fail:
         run.failed("cell 1", ValueError("no number"))
     print("a line of a careless library")
@@ -97,17 +101,28 @@ def test_a_run_leaves_summary_manifest_tables_and_arrays(tmp_path):
     assert code == 0
     summary, manifest = summary_of(folder), json.loads((folder / "manifest.json").read_text())
     assert (summary["status"], summary["failed_cells"], summary["bad"]) == ("done", 0, [1.0, None])
-    assert summary["rows"][1] == {"number": 1, "value": None, "word": "a,b", "good": True, "pair": [0.0, 1.0]}
+    assert summary["rows"][1] == {
+        "number": 1,
+        "value": None,
+        "word": "a,b",
+        "good": True,
+        "pair": {"low": 1.0},
+    }
     assert summary["folder"] == str(folder)
     assert summary["settings"]["points"] == 3 and summary["provenance"]["stop.gap_m"] == "calibrated"
     assert set(manifest["files"]) == {path.name for path in folder.iterdir()}
     assert manifest["parameters"]["stop"]["gap_m"] == 0.011883925614219
-    assert manifest["captions"]["rows.csv"] == "Rows."
+    columns = json.loads((folder / "columns.json").read_text())
+    speed = {"name": "value_m_per_s", "heading": "speed of the ball", "unit": "m/s", "note": "none at rest"}
+    assert columns["rows.csv"]["holds"] == "Rows." and columns["rows.csv"]["columns"][1] == speed
+    assert columns["numbers.npz"] == {"holds": "x [m].", "arrays": {"x": [3]}} and set(columns) == set(
+        manifest["files"]
+    )
     assert manifest["versions"]["numpy"] and {"commit", "dirty"} == set(manifest["git"])
     with (folder / "rows.csv").open() as stream:
         rows = list(csv.DictReader(stream))
-    assert list(rows[0]) == ["number", "value", "word", "good", "pair"]
-    assert rows[1] == {"number": "1", "value": "", "word": "a,b", "good": "True", "pair": "[0.0, 1.0]"}
+    assert list(rows[0]) == ["number", "value_m_per_s", "word", "good", "pair_low"]
+    assert rows[1] == dict(zip(rows[0], ["1", "", "a,b", "True", "1.0"], strict=True))
     assert np.load(folder / "numbers.npz")["x"].tolist() == [0.0, 1.0, 2.0]
 
 
@@ -184,7 +199,7 @@ def test_a_fault_of_the_program_is_no_wrong_use(tmp_path, letter_scene, fault):
 def test_json_is_one_object_and_nothing_else_on_standard_output(tmp_path, capsys, argv, code):
     assert start("--json", *argv, out=tmp_path)[0] == code
     answer = json.loads(capsys.readouterr().out)
-    assert answer["schema"] == 2 and answer["exit_code"] == code
+    assert answer["schema"] == 3 and answer["exit_code"] == code
 
 
 def test_suspicious_values_are_told_and_kept(tmp_path, capsys):
@@ -208,13 +223,22 @@ def test_what_a_study_may_not_store_is_refused(tmp_path, letter_scene):
     with pytest.raises(KeyError):
         run.verdict("torsion", "agrees", found="")
     with pytest.raises(KeyError):
-        run.answer("hysteresis", "because")
+        run.verdict("no point", "agrees", found="")
     with pytest.raises(TypeError, match="set"):
-        run.json("no_json", {"numbers": {1}})
-    for name in ("failures", "failed_cells", "verdicts", "answers", "model_choice", "warnings", "status"):
+        run.json("no_json", {"numbers": {1}}, "A set.")
+    with pytest.raises(TypeError, match="a cell is one value"):
+        run.table("pairs", [Cell(number=1, value=(0.0, 1.0), word="", good=True, pair={})], "Pairs.", of=Cell)
+    run.finding("The beam has p10 in Eq. (1) and Fig. 2, 3 times the map's.")
+    for sentences in (["It is 1.5 to 2."], ["It is so."] * 3):
+        with pytest.raises(ValueError, match="findings"):
+            [run.finding(sentence) for sentence in sentences]
+    with pytest.raises(ValueError, match="no rows"):
+        run.close("done", {})
+    for name in ("failures", "failed_cells", "verdicts", "findings", "model_choice", "warnings", "status"):
         with pytest.raises(ValueError, match=name):
-            run.close("done", {name: []})
-    assert run.close("done", {})["verdicts"] == {"p3": {"verdict": "agrees", "found": "p3", "note": ""}}
+            run.close("done", {"rows": [], name: []})
+    kept = run.close("done", {"rows": []})["verdicts"]
+    assert kept == {"p3": {"verdict": "agrees", "found": "p3", "note": "", "figure": ""}}
 
 
 @pytest.mark.filterwarnings("ignore::beam.SuspiciousValue")
@@ -225,20 +249,25 @@ def test_what_the_letter_says_is_kept_of_its_spring_only(tmp_path):
     assert [of_the_letter(read_scene("letter", [one])) for one in own + other] == [True] * 4 + [False] * 4
     run = Run(study="transitions", folder=tmp_path, scene=read_scene("steel_ruler"), command="")
     run.verdict("p3", "agrees", found="p3")
-    assert not run.close("done", {})["verdicts"] and not run.letters
+    assert not run.close("done", {"rows": []})["verdicts"] and not run.letters
 
 
-def test_each_table_has_the_heading_of_its_rows_even_without_rows(tmp_path, letter_scene):
+def test_each_table_says_what_its_columns_hold_even_without_rows(tmp_path, letter_scene):
     run, calls = Run(study="transitions", folder=tmp_path, scene=letter_scene, command=""), 0
     for path in (ROOT / "studies").rglob("*.py"):
         for call in re.findall(r"run\.table\((?:[^()]|\([^()]*\))*\)", path.read_text()):
             module = importlib.import_module(".".join(path.relative_to(ROOT).with_suffix("").parts))
             kind, calls = eval(re.search(r"of=([\w.]+)", call)[1], vars(module)), calls + 1
-            heading = ",".join(entry.name for entry in fields(kind)) + "\n"
-            assert run.table("empty", [], of=kind, show=()).read_text() == heading
+            columns = columns_of(kind, [])
+            names = ",".join(column.name for column in columns) + "\n"
+            assert run.table("empty", [], "None.", of=kind, show=()).read_text() == names
+            assert kind.__name__ != "Row" and len({column.heading for column in columns}) == len(columns)
+            for column in columns:
+                assert "_" not in column.heading.replace("F_", "") and column.unit in {"", *UNITS}, column
+                assert column.unit or not column.field.endswith(("_hz", "_s", "_kg")), column
     assert calls > 40
     with pytest.raises(TypeError, match="rows of one dataclass"):
-        run.table("others", [calls], of=Row)
+        run.table("others", [calls], "Others.", of=Cell)
 
 
 def test_files_are_complete_or_absent(tmp_path, monkeypatch):

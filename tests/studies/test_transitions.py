@@ -83,12 +83,16 @@ def test_the_small_form_of_one_frequency_and_own_modes_that_give_the_same_orbit(
     assert rows["beam"]["end_speed"] == pytest.approx(abs(fold.speed), rel=1e-4)
     assert {(row["letter"], row["period"]) for row in rows.values()} == {(5, 5)}
     assert rows["map"]["exact"] == pytest.approx(rows["map"]["excess_down"], rel=1e-9)
-    (line,) = ran.rows("periods")
-    assert line["letter"] == "p5" and line["beam"] == f"p5 {rows['beam']['excess_down']:+.4e}"
     assert ran.summary["modes"] == 10 and ran.verdicts["p5"] == "agrees"
-    arrays = ran.arrays("orbit_diagram")
-    assert len(arrays) == 4 * 2 * 4 and arrays["beam_22p20_hz_up_points"].shape == (9, 40)
-    assert set(arrays["beam_22p20_hz_down_period"]) <= {0, 1, 5}
+    points = ran.rows("orbit_diagram")
+    beams = [row for row in points if row["description"] == "beam"]
+    assert {row["period"] for row in beams if row["direction"] == "down"} <= {"0", "1", "5"}
+    scan = [row for row in beams if row["direction"] == "up"]
+    assert len({row["excess"] for row in scan}) == 9 and float(scan[0]["excess"]) < 0.0
+    strobes = [row["strobe"] for row in scan if row["excess"] == scan[-1]["excess"]]
+    assert scan[-1]["period"] == "5" and strobes == ["0", "1", "2", "3", "4"]
+    top = max(float(row["amplitude_m"]) / (1.0 + float(row["excess"])) for row in points)
+    assert top == pytest.approx(max(row["grazing_amplitude"] for row in rows.values()), rel=1e-12)
     lists = (model.frequencies_hz, model.decay_rate, model.phi, model.participation)
     given += tuple(f"modal_data.{key}={one.tolist()}" for key, one in zip(MODE_LISTS, lists, strict=True))
     given += "spring.kind=modal_data", "modes.count=10", f"modal_data.tip_mass_kg={scene.tip.mass_kg}"

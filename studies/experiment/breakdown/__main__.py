@@ -18,7 +18,7 @@ Computed:
 
 Run:     python -m studies breakdown [--full] [--quick]     --full takes some minutes
 Writes:  outcomes.csv (a row a beam), islands.csv, born_period.csv (a row a cell of the search),
-         breakdown.npz (the scans), and the figures breakdown, born_period
+         breakdown.csv (a row a strobed point of the scans), and the figures breakdown, born_period
 """
 
 from __future__ import annotations
@@ -26,8 +26,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import Annotated
-
-import numpy as np
 
 from contact import maximal_period
 from studies import letter
@@ -47,8 +45,9 @@ from studies.experiment.breakdown.model import (
     single_mode,
     tuned,
 )
-from studies.physics.descriptions import Diagram, word
+from studies.physics.descriptions import Diagram, StrobePoint, strobe_points_of, word
 from studies.physics.least_model import TRACE_EXCESS
+from studies.shell.columns import written
 from studies.shell.options import MOST_CELLS, Within
 from studies.shell.scene import Scene, model_of, nordmark_at
 from studies.shell.study import Run, study
@@ -82,7 +81,7 @@ def breakdown(
     taus = sorted({*(QUICK_RESTITUTIONS if run.quick else RESTITUTIONS), tau})
     islands = run.map(partial(island, scene), taus, "islands")
     known = [entry for entry, _ in islands]
-    run.table("islands", known, "Eq. (1): p3 and chaos below grazing.", of=Island)
+    run.table("islands", known, "The island of p3 and chaos of Eq. (1) below grazing.", of=Island)
     calibrated = Spring(scene=scene, model=model_of(scene), tip_mass_kg=scene.tip.mass_kg)
     cells, with_6 = search(scene, run)
     jobs = [("Eq. (1)", single_mode(scene, tau)), ("beam", calibrated)]
@@ -96,13 +95,17 @@ def breakdown(
     # as in the letter: p3 in the downward scan; otherwise the first candidate
     candidates = [*(o for o in outcomes[2:] if o.p3_last is not None), *outcomes[2:]]
     found = candidates[0] if candidates else None
-    run.table("outcomes", outcomes, "What is born at grazing, and the end of the downward scan.", of=Outcome)
-    store(run, scans)
+    words = "The period that begins at grazing, and the end of the downward scan."
+    run.table("outcomes", outcomes, words, of=Outcome)
+    springs = [spring for _, spring in jobs]
+    store(run, scans, [spring.strobed().oscillator.grazing_amplitude() for spring in springs])
     from studies.experiment.breakdown import figure
 
     shown = [pair for pair in scans if pair[0] in (*outcomes[:2], found)]
-    run.figure("breakdown", figure.draw_scans(shown), figure.SCANS)
-    run.figure("born_period", figure.draw_born(cells, scene.tip.mass_kg, found), figure.BORN)
+    run.figure("breakdown", figure.draw_scans(shown, tau, letters=run.letters), figure.SCANS)
+    born = figure.draw_born(cells, scene.tip.mass_kg, found, letters=run.letters)
+    run.figure("born_period", born, figure.BORN)
+    tell(run, outcomes[1], found, known[taus.index(tau)])
     judge(run, maximal_period(nordmark), outcomes, found, known)
     return {
         "excess_of_letters_chaos_as_rho": nordmark.excess(CHAOS_AT),
@@ -124,22 +127,40 @@ def search(scene: Scene, run: Run) -> tuple[list[Cell], list[Spring]]:
     ]
     found = run.attempt(cell_of, springs, "cells of the search")
     cells = [cell for cell in found if cell is not None]
-    run.table("born_period", cells, "Period born at grazing over unprinted values.", of=Cell, show=())
+    run.table(
+        "born_period", cells, "Period that begins at grazing, by what is not printed.", of=Cell, show=()
+    )
     with_6 = [one for one, cell in zip(springs, found, strict=True) if cell and cell.period == BORN_PERIOD]
     return cells, nearest_first(with_6, scene.tip.mass_kg)
 
 
-def store(run: Run, scans: Sequence[tuple[Outcome, Mapping[str, Diagram]]]) -> None:
-    """The strobe points of all scans; failed amplitudes."""
-    arrays = dict[str, np.ndarray]()
-    for outcome, ways in scans:
-        name = outcome.description
+def store(run: Run, scans: Sequence[tuple[Outcome, Mapping[str, Diagram]]], grazing: Sequence[float]) -> None:
+    """The strobed points of all scans; failed amplitudes. `grazing`: grazing amplitudes [m]."""
+    points = list[StrobePoint]()
+    for (outcome, ways), amplitude in zip(scans, grazing, strict=True):
+        points += strobe_points_of(FREQUENCY_HZ, outcome.description, amplitude, ways)
         for way, diagram in ways.items():
-            stem = f"{'single_mode' if name == 'Eq. (1)' else name.replace(' ', '_')}_{way}"
-            arrays |= {f"{stem}_excess": diagram.excess, f"{stem}_points": diagram.points}
             for reason in diagram.failures:
-                run.failed(f"{name}, {way}", reason)
-    run.arrays("breakdown", **arrays)
+                run.failed(f"{outcome.description}, {way}", reason)
+    run.table("breakdown", points, "Strobed points of the scans.", of=StrobePoint, show=())
+
+
+def tell(run: Run, beam: Outcome, found: Outcome | None, own: Island) -> None:
+    """The findings: what is born of the calibrated beam, and of the one found; the island of Eq. (1)."""
+    born = word(beam.born_period) if beam.born_period else "no period"
+    saw = f"; the letter saw p{BORN_PERIOD}" * run.letters
+    run.finding(
+        f"With the period and damping of Fig. 5 the calibrated beam has {born} just above grazing{saw}."
+    )
+    if found is not None:
+        mass = written(1e3 * (found.tip_mass_kg or 0.0), 3)
+        ends = ", and its downward scan ends on p3" if found.ends_on_p3 else ""
+        run.finding(f"A beam with ball and mount of {mass} g has p{BORN_PERIOD} just above grazing{ends}.")
+    if own.end > own.fold_p3:
+        run.finding(
+            "Below grazing Eq. (1) has p3 and chaos that are not connected with grazing; they end at an "
+            f"excess of {written(own.end, 2)}."
+        )
 
 
 def judge(
@@ -153,11 +174,13 @@ def judge(
     )
     note = "no cell of the search has it"
     if found is not None:
-        said += f", {word(found.born_period)} found"
+        said += f", {word(found.born_period)} in the search"
         note = (
             f"the calibrated ball of {1e3 * (beam.tip_mass_kg or 0.0):.2f} g does not; one of "
-            f"{1e3 * (found.tip_mass_kg or 0.0):.2f} g with {found.higher_damping:g} times the damping of "
-            "the higher modes does, and the letter prints neither"
+            f"{1e3 * (found.tip_mass_kg or 0.0):.2f} g "
+            + f"with {found.higher_damping:g} times the damping of the higher modes "
+            * (found.higher_damping != 1.0)
+            + "does, and the letter does not print it"
         )
     agrees, in_part = (one is not None and one.born_period == BORN_PERIOD for one in (beam, found))
     run.verdict(
@@ -165,21 +188,26 @@ def judge(
         "agrees" if agrees else "in part" if in_part else "differs",
         found=said,
         note="" if agrees else note,
+        figure="" if agrees else "born_period",
     )
     ends = next((outcome for outcome in (beam, found) if outcome is not None and outcome.ends_on_p3), None)
     run.verdict(
         "breakdown_p3",
         "differs" if ends is None else "agrees" if ends is beam else "in part",
-        found="beam: not so" if ends is None else f"beam: {ends.p3_first:.4f} to {ends.p3_last:.4f}",
+        found="beam: not so"
+        if ends is None
+        else f"beam: p3 from an excess of {written(ends.p3_first or 0.0)} to {written(ends.p3_last or 0.0)}",
         note="no downward scan ends in p3" if ends is None else "" if ends is beam else note,
     )
     alive = [entry.restitution for entry in islands if entry.end >= CHAOS_AT]
     printed = any(abs(tau - letter.RESTITUTION) < 1e-9 for tau in alive)
-    needs = f"the island is there; at the quoted place it needs tau of {max(alive, default=0.0):g} or less"
+    needs = f"the island is there; at the quoted place it needs τ of {max(alive, default=0.0):g} or less"
     run.verdict(
         "island",
         "agrees" if printed else "in part" if alive else "differs",
         found="Eq. (1): "
-        + "; ".join(f"{i.fold_p3:.3f} to {i.end:.3f} at tau = {i.restitution:g}" for i in islands),
+        + "; ".join(
+            f"{written(i.fold_p3, 3)} to {written(i.end, 3)} at τ = {i.restitution:g}" for i in islands
+        ),
         note=f"{needs}, read as an excess" if alive else "no island reaches the quoted place",
     )

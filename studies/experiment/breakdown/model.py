@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from typing import Annotated
 
 import numpy as np
 
@@ -94,12 +95,12 @@ def single_mode(scene: Scene, restitution: float) -> Spring:
 
 @dataclass(frozen=True, kw_only=True)
 class Cell:
-    """What a beam is born with at grazing: period (0: none up to 64), impacts."""
+    """The period that begins at grazing for one choice of what is not printed."""
 
-    tip_mass_kg: float
-    higher_damping: float
-    period: int
-    impacts: int
+    tip_mass_kg: Annotated[float, "mass of ball and mount [kg]"]
+    higher_damping: Annotated[float, "factor on the damping of the higher modes"]
+    period: Annotated[int, "born period; 0 for none up to 64"]
+    impacts: Annotated[int, "impacts in a period"]
 
 
 def cell_of(spring: Spring) -> Cell:
@@ -128,23 +129,22 @@ class Island:
     """p3 and chaos of Eq. (1) below grazing, from the fold of p3 to the last excess with impacts."""
 
     restitution: float
-    fold_p3: float
-    end: float
+    fold_p3: Annotated[float, "fold of p3, F/F_g − 1"]
+    end: Annotated[float, "last excess with impacts, F/F_g − 1"]
 
 
 @dataclass(frozen=True, kw_only=True)
 class Outcome:
-    """What is born at excess 1e-3 (period 0: did not settle), the fold of p3, the part of the downward scan
-    on p3 with one impact, and the excess at which that scan has its last impacts."""
+    """What is born at excess 1e-3, and how the downward scan ends."""
 
     description: str
-    tip_mass_kg: float | None
-    higher_damping: float
-    born_period: int
-    fold_p3: float | None
-    p3_first: float | None
-    p3_last: float | None
-    impacts_end: float | None
+    tip_mass_kg: Annotated[float | None, "mass of ball and mount [kg]"]
+    higher_damping: Annotated[float, "factor on the damping of the higher modes"]
+    born_period: Annotated[int, "born period; 0 where the motion did not settle"]
+    fold_p3: Annotated[float | None, "fold of p3, F/F_g − 1"]
+    p3_first: Annotated[float | None, "p3 of the downward scan from, F/F_g − 1"]
+    p3_last: Annotated[float | None, "p3 of the downward scan to, F/F_g − 1"]
+    impacts_end: Annotated[float | None, "last impacts of the downward scan, F/F_g − 1"]
 
     @property
     def ends_on_p3(self) -> bool:

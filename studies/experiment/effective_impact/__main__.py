@@ -42,6 +42,7 @@ from studies.experiment.effective_impact.model import (
     series_of,
 )
 from studies.physics.calibration import Targets
+from studies.shell.columns import written
 from studies.shell.run import Verdict
 from studies.shell.scene import Scene, SceneError, harmonic
 from studies.shell.study import Run, study
@@ -72,17 +73,23 @@ def effective_impact(scene: Scene, run: Run) -> Mapping[str, object]:
     masses = run.map(partial(Spring.of, scene, frequency, modes), MASS_RATIOS[::every], "springs")
     found = run.attempt(Case.measured, cases_of(spring, masses, reference, every), "collisions")
     rows = [row for row in found if row is not None]
-    run.table("collisions", rows, of=Approach, show=())
+    run.table("collisions", rows, "One collision a row, and what it does to mode 1.", of=Approach, show=())
     searches = [select(rows, "search", name) for name in series_of(rows, "search")]
     floors = [floor for search in searches if (floor := floor_of(search)) is not None]
-    run.table("floors", floors, "Smallest restitution over the tip mass, by local restitution.", of=Floor)
+    run.table(
+        "floors", floors, "Smallest restitution over the tip mass, by restitution of the contact.", of=Floor
+    )
     from studies.experiment.effective_impact import figure  # matplotlib is slow to import
 
-    for draw in (figure.speed, figure.mass) if select(rows, "mass") else (figure.speed,):
-        run.figure(draw.__name__, draw(rows), " ".join((draw.__doc__ or "").split()))
+    if select(rows, "mass"):
+        run.figure("mass", figure.mass(rows, run.letters), figure.MASSES)
+    run.figure("speed", figure.speed(rows, run.letters), figure.SPEEDS)
     quoted = next(iter(select(rows, "reference")), None)
     if quoted is not None and quoted.returns and any(floor.local_restitution == 1.0 for floor in floors):
         judge(run, quoted, on_orbits(rows), floors)
+    elif quoted is not None and quoted.impacts:
+        back = f"comes back with a restitution of {written(quoted.restitution, 2)}"
+        run.finding(f"After a first collision, mode 1 {back if quoted.returns else 'does not come back'}.")
     return {
         "rows": rows,
         "frequency_hz": frequency,
@@ -93,7 +100,7 @@ def effective_impact(scene: Scene, run: Run) -> Mapping[str, object]:
 
 
 def judge(run: Run, at: Approach, orbits: Sequence[Approach], floors: Sequence[Floor]) -> None:
-    """Verdicts on restitution and delay, and this study's part of the answer on higher modes."""
+    """Verdicts on restitution and delay, and what came out."""
     loss = {floor.local_restitution: floor.restitution for floor in floors}
     least, lossy = loss[1.0], min(loss.values())
     returned = [orbit.restitution for orbit in orbits if orbit.returns]
@@ -109,14 +116,22 @@ def judge(run: Run, at: Approach, orbits: Sequence[Approach], floors: Sequence[F
         note=f"{lossy:.2f} at least with any loss in the contact; on settled orbits the ringing of the "
         "collision before moves the touch",
     )
-    delay, share = f"{1e3 * at.delay_s:.3f} ms", f"{at.delay_s / at.arc_s:.2f} of the time"
-    note = f"{share} v/a in which the tip would turn by itself"
-    run.verdict("delay", "not printed", found=f"{delay} at excess {at.excess:g}", note=note)
-    run.answer(
-        "higher_modes",
-        f"In a first collision at excess {at.excess:g} the higher modes leave mode 1 a restitution of "
-        f"{at.restitution:.3f}, and of {least:.3f} at least over the mass of the ball ({lossy:.3f} with any "
-        f"loss in the contact): a floor that the contact time of {1e6 * at.contact_s:.0f} µs sets. On "
-        f"settled orbits, where the collision before still rings, it is {span}. The delay is "
-        f"{delay}, {share} in which the tip would turn by itself.",
+    delay, share = f"{1e3 * at.delay_s:.3f} ms", at.delay_s / at.arc_s
+    run.verdict(
+        "delay",
+        "not printed",
+        found=f"{delay} at an excess of {at.excess:g}",
+        note=f"{share:.2f} of the time v/a in which the tip would turn by itself",
+        figure="speed",
     )
+    above = ", more than the letter estimates" if run.letters and lossy > letter.RESTITUTION + NEAR else ""
+    run.finding(
+        "Whatever the mass of the ball and the loss in the contact, a first collision leaves mode 1 a "
+        f"restitution of {written(lossy, 2)} or more{above}."
+    )
+    if returned:
+        run.finding(
+            "On settled orbits, where the collision before still rings, the restitution is as low as "
+            f"{written(min(returned), 2)} at some masses."
+        )
+    run.finding(f"A first collision delays mode 1 by {written(1e3 * at.delay_s, 2)} ms.")

@@ -19,6 +19,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from typing import Annotated
 
 import numpy as np
 from scipy.interpolate import PchipInterpolator
@@ -65,25 +66,23 @@ FINE = 2001
 
 @dataclass(frozen=True, kw_only=True)
 class Approach:
-    """One approach; what does not exist is not a number.
+    """One approach; what does not exist is not a number."""
 
-    `orbit_period` is None for a first collision and 0 where the motion did not settle: then there are no
-    numbers.
-    """
-
-    curve: str
+    curve: Annotated[str, "what is varied; studies.experiment.effective_impact.model lists the curves"]
     series: str
-    value: float
+    value: Annotated[float, "value that is varied; the excess on the curve speed, else the ratio of masses"]
     excess: float
-    mass_ratio: float
-    orbit_period: int | None = None
-    restitution: float = math.nan
-    delay_s: float = math.nan
-    kick: float = math.nan
-    contact_s: float = math.nan
-    arc_s: float = math.nan
-    impacts: int = 0
-    forced_by_ringing: bool = False
+    mass_ratio: Annotated[float, "tip mass over the mass of the leaf"]
+    orbit_period: Annotated[int | None, "period; none for a first collision, 0 if not settled"] = None
+    restitution: Annotated[float, "restitution tau; none where mode 1 does not come back"] = math.nan
+    delay_s: Annotated[float, "time delay [s]; none where mode 1 does not come back"] = math.nan
+    kick: Annotated[float, "kick of the mode-1 velocity over the approach velocity"] = math.nan
+    contact_s: Annotated[float, "time in contact [s]"] = math.nan
+    arc_s: Annotated[float, "time v/a to the top of the arc beyond the gap [s]"] = math.nan
+    impacts: Annotated[int, "impacts in the collision"] = 0
+    forced_by_ringing: Annotated[bool, "whether ringing alone reaches the gap; the kick is then in m/s"] = (
+        False
+    )
 
     @property
     def returns(self) -> bool:
@@ -192,7 +191,7 @@ def cases_of(spring: Spring, masses: Sequence[Spring], fine: Spring, every: int 
     is Hertz's, with other tip masses."""
     own, hertz = contact_law_of(spring.scene), hertz_of(spring.scene)
     other: list[tuple[str, Spring, ContactLaw]] = [] if own == hertz else [(OWN, spring, own)]
-    lines = [*other, (HERTZ, spring, hertz), ("bare tip, Hertz", masses[0], hertz)]
+    lines = [*other, (HERTZ, spring, hertz), ("Hertz, no tip mass", masses[0], hertz)]
     for name, one, law in lines:
         for excess in EXCESSES[::every]:
             yield one.case("speed", name, law, value=excess, excess=excess)
@@ -226,10 +225,10 @@ def on_orbits(rows: Sequence[Approach]) -> list[Approach]:
 class Floor:
     """The smallest restitution over the tip mass, for one local restitution."""
 
-    local_restitution: float
-    restitution: float
-    mass_ratio: float
-    kick: float
+    local_restitution: Annotated[float, "restitution of the contact itself"]
+    restitution: Annotated[float, "smallest restitution tau over the tip mass"]
+    mass_ratio: Annotated[float, "tip mass over the mass of the leaf"]
+    kick: Annotated[float, "kick of the mode-1 velocity over the approach velocity"]
 
 
 def floor_of(rows: Sequence[Approach]) -> Floor | None:

@@ -25,8 +25,8 @@ The bands are those of the map; across each of them the hysteresis of map and Eq
 
 Run:     python -m studies hysteresis [--step HZ] [--inside N]
 Writes:  hysteresis.csv (a row a frequency and period), causes.csv (factors at the letter's frequencies and
-         over all folds), accuracy.csv (how far each description is off), bands.csv (a row a frequency of each
-         band), and the figures hysteresis (as Fig. 3) and bands
+         over all folds), accuracy.csv (how far each description is off), branch.csv (a row an orbit),
+         bands.csv (a row a frequency of each band), and the figures hysteresis (as Fig. 3), branch and bands
 """
 
 from __future__ import annotations
@@ -40,21 +40,32 @@ from typing import Annotated
 import numpy as np
 
 from contact import maximal_period
+from studies import letter
 from studies.experiment.hysteresis.model import (
     CAUSES,
     DESCRIPTIONS,
     Folds,
     Inside,
+    OnBranch,
+    branch_of,
     column,
     inside_band,
     path_of,
 )
-from studies.letter import AMPLITUDE_STABILITY
-from studies.physics.descriptions import falls
+from studies.physics.descriptions import falls, or_none
 from studies.physics.least_model import at_letters_drives
+from studies.shell.columns import written
 from studies.shell.options import Within
 from studies.shell.run import Verdict
-from studies.shell.scene import Scene, harmonic, model_of, periods_of, require_drive_below
+from studies.shell.scene import (
+    Scene,
+    corresponding,
+    harmonic,
+    model_of,
+    nordmark_at,
+    periods_of,
+    require_drive_below,
+)
 from studies.shell.study import Run, study
 
 PERIODS, BANDS = range(3, 11), range(3, 12)
@@ -66,10 +77,9 @@ NEARLY = 1.1
 
 @dataclass(frozen=True, kw_only=True)
 class Causes:
-    """What each cause multiplies the hysteresis by, at one frequency or in the median; a row at one frequency
-    multiplies to the beam's hysteresis over the map's."""
+    """What each cause multiplies the hysteresis by; the product is the beam's hysteresis over the map's."""
 
-    at: str
+    at: Annotated[str, "place, or median over all"]
     truncation_of_the_map: float | None
     size_of_the_kick: float | None
     kick_against_velocity: float | None
@@ -80,12 +90,12 @@ class Causes:
 
 @dataclass(frozen=True, kw_only=True)
 class Accuracy:
-    """By what factor a description is off the beam, up or down, over so many `folds`."""
+    """By what factor a description is off the beam, up or down."""
 
     description: str
-    folds: int
-    median: float
-    worst: float
+    folds: Annotated[int, "number of orbits"]
+    median: Annotated[float, "factor, median"]
+    worst: Annotated[float, "factor, largest"]
 
     def __str__(self) -> str:
         return f"{self.median:.2f} (median; worst {self.worst:.1f})"
@@ -107,7 +117,7 @@ def hysteresis(
     run.table(
         "hysteresis",
         rows,
-        "Fold F_m/F_g - 1 of the orbits in nine descriptions.",
+        "End of the orbits p_m when the amplitude is lowered, F_m/F_g − 1, in nine descriptions.",
         of=Folds,
         show=("frequency_hz", "m", *DESCRIPTIONS) if run.quick else (),
     )
@@ -115,16 +125,25 @@ def hysteresis(
     kept = resolved(rows)
     causes = [causes_over([row], f"{row.frequency_hz:.2f} Hz, p{row.m}") for row in at_letter]
     causes.append(causes_over(kept, f"median of {len(kept)} folds"))
-    run.table("causes", causes, "Factor of each cause, from the map to the beam.", of=Causes)
+    run.table(
+        "causes", causes, "Factor of each cause in the hysteresis, from the map to the beam.", of=Causes
+    )
     off = [accuracy(name, kept) for name in DESCRIPTIONS if name != "beam"]
-    run.table("accuracy", off, "Hysteresis of a description against the beam's, factor.", of=Accuracy)
+    words = "Factor between the hysteresis of a description and the beam's, upwards or downwards."
+    run.table("accuracy", off, words, of=Accuracy)
     from studies.experiment.hysteresis import figure  # matplotlib is slow to import
 
-    run.figure("hysteresis", figure.draw_curves(scene, rows), figure.CURVES)
+    run.figure("hysteresis", figure.draw_curves(scene, rows, letters=run.letters), figure.CURVES)
+    frequency = corresponding(scene, letter.TIME_TRACE_HZ)
+    m = maximal_period(nordmark_at(scene, frequency))
+    if branch := or_none(branch_of, scene, frequency, m, model) or []:
+        run.figure("branch", figure.draw_branch(branch, frequency, m), figure.BRANCH)
+    words = f"The branch of p{m} of the beam at {frequency:.2f} Hz."
+    run.table("branch", branch, words, of=OnBranch, show=())
     judge(run, rows, {found.description: found for found in off}, causes[-1], higher=model.n_modes > 1)
     within = [row for found in run.map(partial(inside_band, scene, inside), BANDS, "bands") for row in found]
-    run.table("bands", within, "Hysteresis 1 - F_m/F_g across the bands of p_m.", of=Inside, show=())
-    run.figure("bands", figure.draw_bands(scene, path_of(scene)), figure.BANDS)
+    run.table("bands", within, "Hysteresis 1 − F_m/F_g across the bands of p_m.", of=Inside, show=())
+    run.figure("bands", figure.draw_bands(scene, path_of(scene), letters=run.letters), figure.BANDS)
     return {
         "rows": rows,
         "causes": causes,
@@ -137,7 +156,7 @@ def hysteresis(
 def resolved(rows: Sequence[Folds]) -> list[Folds]:
     """The rows that enter the statistics: the beam's hysteresis above the amplitude stability, and a fold in
     the map."""
-    return [row for row in rows if (row.beam or 0.0) < -AMPLITUDE_STABILITY and row.map is not None]
+    return [row for row in rows if (row.beam or 0.0) < -letter.AMPLITUDE_STABILITY and row.map is not None]
 
 
 def causes_over(rows: Sequence[Folds], at: str) -> Causes:
@@ -161,21 +180,25 @@ def accuracy(description: str, rows: Sequence[Folds]) -> Accuracy:
 def judge(
     run: Run, rows: Sequence[Folds], off: Mapping[str, Accuracy], median: Causes, *, higher: bool = True
 ) -> None:
-    """The answer, and the verdicts on Fig. 3 and, if there are `higher` modes, on the two parameters."""
+    """The findings, and the verdicts on Fig. 3 and, if there are `higher` modes, on the two parameters."""
     factors = {name: value for name in CAUSES if (value := getattr(median, name)) is not None}
     if "truncation_of_the_map" not in factors:
         run.say("no p_m has a fold in the map, Eq. (1) and the beam: there is nothing to compare")
         return
     own, two = factors["truncation_of_the_map"], off["two_parameters"]
-    up, down = max(factors, key=factors.__getitem__), min(factors, key=factors.__getitem__)
-    run.answer(
-        "hysteresis",
-        f"The map's hysteresis is off the beam's by a factor of {off['map']}. The difference is a product "
-        f"of causes: in the median the {up.replace('_', ' ')} multiplies the hysteresis by "
-        f"{factors[up]:.2f}, the {down.replace('_', ' ')} by {factors[down]:.2f}."
-        + f" The letter's two parameters represent the higher modes up to a factor of {two}, which is the "
-        "ringing that has not decayed when the tip comes back." * higher,
-    )
+    size = written(off["map"].median, 3)
+    run.finding(f"The map's hysteresis differs from the beam's by a factor of {size} in the median.")
+    most = max(factors, key=lambda name: abs(math.log(factors[name])))
+    if abs(math.log(factors[most])) > math.log(NEARLY):
+        run.finding(
+            f"Of all causes of the difference the {most.replace('_', ' ')} is the largest: it multiplies the "
+            f"hysteresis by {written(factors[most], 3)}."
+        )
+    if higher:
+        run.finding(
+            "Restitution and time delay in place of the higher modes give the beam's hysteresis to a factor "
+            f"of {written(two.median, 3)} in the median."
+        )
     run.verdict(
         "hysteresis",
         "in part" if max(own, 1.0 / own) > NEARLY else "agrees",
@@ -189,7 +212,7 @@ def judge(
         run.verdict(
             "neighbour_band",
             "agrees" if beside else "differs",
-            found=f"{len(beside)} orbits beside p_m of one less",
+            found=f"{len(beside)} orbits beside one of a period shorter by one",
             note=", ".join(beside),
         )
     if not higher:
@@ -214,8 +237,9 @@ def judge_bands(run: Run, scene: Scene, rows: Sequence[Inside]) -> Mapping[str, 
         "bands",
         "agrees" if zero < 1e-9 and grows else "differs",
         found=f"m = {crossed[0]} to {crossed[-1]} in the range of Figs. 3 and 5; hysteresis at the upper "
-        f"edges at most {zero:.1g}, growing towards the lower: {'yes' if grows else 'no'}",
-        note=f"alpha from {path[0].alpha:.2f} to {path[-1].alpha:.2f}, gamma from {path[0].gamma:.3f} to"
-        f" {path[-1].gamma:.3f}: the bands are crossed at almost constant gamma",
+        f"edges at most {written(zero, 1)}, growing towards the lower: {'yes' if grows else 'no'}",
+        note=f"α from {written(path[0].alpha, 2)} to {path[-1].alpha:.2f}, γ from {path[0].gamma:.3f} to "
+        f"{path[-1].gamma:.3f}: the bands are crossed at almost constant γ",
+        figure="bands",
     )
     return {"largest_at_upper_edge": zero, "crossed": crossed}

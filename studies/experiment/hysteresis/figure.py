@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from contact import Band, NordmarkMap, band
 from studies import letter
-from studies.experiment.hysteresis.model import FREQUENCIES_HZ, Folds
+from studies.experiment.hysteresis.model import FREQUENCIES_HZ, Folds, OnBranch
 from studies.shell import plotting
 from studies.shell.plotting import BLACK, BLUE, GREEN, GUIDE, LETTER, NOTE, PAGE, VERMILION
 from studies.shell.scene import Scene, band_of, corresponding, nordmark_at, periods_of
@@ -20,26 +20,30 @@ from studies.shell.scene import Scene, band_of, corresponding, nordmark_at, peri
 CURVES = (
     "The letter's Fig. 3, computed: where the p_m orbits end when the amplitude is lowered, against the "
     "drive frequency, for m = 3 to 10; below the same on a logarithmic scale. The beam follows the bands of "
-    "the map, at another size and bent by the ringing of its second mode; crosses: folds of the equations "
-    "alone, whose orbit would touch the plate elsewhere too."
+    "the map at another size. Crosses are folds whose orbit would touch the plate elsewhere too."
 )
 
-BANDS = (
-    "Bands of p_m in the plane of alpha and gamma as rho goes to 0; line: the path of the experiment, "
-    "points: its six transitions."
+BRANCH = (
+    "One branch of orbits of the beam. When the amplitude is lowered, the stable orbit meets the unstable "
+    "one at the fold and is gone; up to grazing the motion without impacts is stable as well."
 )
+
+BANDS = "Bands of p_m in the plane of α and γ as ρ goes to 0, and the path of the experiment through them."
+
+EVENTS = {"grazing": "another touch grazes", "undecided": "event not resolved"}
+"""Event of a branch -> its name in the picture, where it is another one."""
 
 STYLES: dict[str, dict[str, Any]] = {
     "map": {"label": "map", "color": BLACK, "linestyle": "-"},
     "single_mode": {"label": "Eq. (1)", "color": BLUE, "linestyle": "--"},
-    "two_parameters": {"label": "one mode, loss and delay", "color": GREEN, "linestyle": "-."},
+    "two_parameters": {"label": "two parameters", "color": GREEN, "linestyle": "-."},
     "beam": {"label": "beam", "color": VERMILION, "marker": "o", "markersize": 2.4, "mfc": "none"},
 }
 """Descriptions in the figure like the letter's."""
 
 
 @plotting.in_house_style
-def draw_curves(scene: Scene, rows: Sequence[Folds]) -> Figure:
+def draw_curves(scene: Scene, rows: Sequence[Folds], *, letters: bool) -> Figure:
     """Folds against frequency, linear and logarithmic."""
     figure, axes = plotting.new_figure(2, 1, width=PAGE, height=0.128, sharex=True)
     edges = [band_of(scene, m) for m in sorted({row.m for row in rows})]
@@ -49,20 +53,24 @@ def draw_curves(scene: Scene, rows: Sequence[Folds]) -> Figure:
     for number, (axis, sign) in enumerate(zip(axes, (1.0, -1.0), strict=True)):
         curves(axis, rows, sign)
         for edge in edges:
-            axis.axvspan(*(edge.upper * unsure), **shade, label="upper edge of a band, letter's error of T")
-        for seen in periods_of(scene):
-            axis.axvline(seen, **LETTER, label="letter's Fig. 2: p$_m$ seen here")
-        plotting.panel(axis, number)
-    names_of_bands(axes, scene, edges)
-    axes[0].set_ylim(-0.16, 0.005)
-    axes[0].axhline(0.0, **GUIDE)
+            if letters:
+                words = "upper edge of the band of p$_m$, letter's error of T"
+                axis.axvspan(*(edge.upper * unsure), **shade, label=words)
+            else:
+                axis.axvline(edge.upper, color="0.75", label="upper edge of the band of p$_m$")
+        for seen in periods_of(scene) if letters else ():
+            axis.axvline(seen, **LETTER, label="letter's Fig. 2: p$_m$ named above")
+        plotting.panel(axis, number, ("end of the orbits", "the same, logarithmic")[number])
+    names_of_bands(axes, scene, edges, letters)
+    axes[0].margins(y=0.14)
+    axes[0].axhline(0.0, **GUIDE, label="grazing")
     axes[1].set_yscale("log")
-    axes[1].set_ylim(1e-6, 0.3)
-    stable = "letter: stability of the amplitude"
-    plotting.mark_letter(axes[1].yaxis, letter.AMPLITUDE_STABILITY, words=stable, along=0.01)
-    plotting.label(axes[0].yaxis, "$F_m/F_g - 1$")
+    if letters:
+        stable = "letter: stability of the amplitude"
+        plotting.mark_letter(axes[1].yaxis, letter.AMPLITUDE_STABILITY, words=stable, along=0.01)
+    plotting.label(axes[0].yaxis, "end of p$_m$, $F_m/F_g - 1$")
     plotting.label(axes[1].yaxis, plotting.HYSTERESIS)
-    plotting.label(axes[1].xaxis, "excitation frequency", "Hz")
+    plotting.label(axes[1].xaxis, "drive frequency", "Hz")
     plotting.legend_below(figure, axes[:1], 3)
     return figure
 
@@ -75,27 +83,58 @@ def curves(axis: Axes, rows: Sequence[Folds], sign: float) -> None:
             shown = [(row.frequency_hz, end) for row, end in ends if row.m == m and sign * end < 0.0]
             axis.plot(*np.array(shown).reshape(-1, 2).T, **style, linewidth=0.9)
     crossed = [(row.frequency_hz, end) for row, end in ends if sign * end < 0.0 and not row.beam_admissible]
-    look: plotting.Style = {"markersize": 3.5, "color": VERMILION, "label": "beam, not admissible"}
-    axis.plot(*np.array(crossed).reshape(-1, 2).T, "x", **look)
+    look: plotting.Style = {"markersize": 3.5, "color": VERMILION, "label": "beam, would touch elsewhere too"}
+    if crossed:
+        axis.plot(*np.array(crossed).reshape(-1, 2).T, "x", **look)
 
 
-def names_of_bands(axes: Sequence[Axes], scene: Scene, edges: Sequence[Band]) -> None:
-    """m of the bands on top, and at the letter's frequencies below."""
+def names_of_bands(axes: Sequence[Axes], scene: Scene, edges: Sequence[Band], letters: bool) -> None:
+    """p_m of the bands inside below, and of the letter's frequencies on top."""
     lowest, highest = (corresponding(scene, f) for f in FREQUENCIES_HZ)
     axes[1].set_xlim(lowest, highest)
-    for seen, m in periods_of(scene).items():
-        at: plotting.Style = {"transform": axes[1].get_xaxis_transform(), "fontsize": NOTE}
-        at |= {"ha": "right", "va": "bottom"}
-        axes[1].text(seen, 0.02, f"p$_{{{m}}}$ ", **at)
+    at: plotting.Style = {"transform": axes[0].get_xaxis_transform(), "fontsize": NOTE, "ha": "center"}
+    for seen, m in periods_of(scene).items() if letters else ():
+        axes[0].text(seen, 1.01, f"p$_{{{m}}}$", **at)
     for edge in edges:
         middle = 0.5 * (max(edge.lower, lowest) + edge.upper)
         if middle < highest:
-            at = {"transform": axes[0].get_xaxis_transform(), "fontsize": NOTE, "ha": "center"}
-            axes[0].text(middle, 1.01, f"$m$ = {edge.period}" if edge.period < 6 else f"{edge.period}", **at)
+            axes[0].text(middle, 0.035, f"p$_{{{edge.period}}}$", **at)
 
 
 @plotting.in_house_style
-def draw_bands(scene: Scene, path: Sequence[NordmarkMap]) -> Figure:
+def draw_branch(rows: Sequence[OnBranch], frequency: float, m: int) -> Figure:
+    """Approach speed against the excess, with the events; the amplitudes are as far above grazing as three
+    times the fold is below it."""
+    shown = [row for row in rows if row.excess <= 3.0 * abs(min(one.excess for one in rows))]
+    figure, axis = plotting.new_figure(height=0.072)
+    excess, speed, stable, admissible = (
+        np.array([getattr(row, name) for row in shown])
+        for name in ("excess", "speed", "stable", "admissible")
+    )
+    excess, speed = 1e2 * excess, 1e3 * speed
+    plotting.branch(axis, excess, speed, stable, admissible)
+    axis.axvline(0.0, **GUIDE, label="grazing")
+    for row in (row for row in shown if row.event):
+        place = 1e2 * row.excess, 1e3 * row.speed
+        axis.plot(*place, "o", color=BLACK, markersize=3.5)
+        left = place[0] > 0.5 * excess.max()
+        at: plotting.Style = {
+            "textcoords": "offset points",
+            "fontsize": NOTE,
+            "ha": "right" if left else "left",
+        }
+        at["xytext"] = (-5.0, -10.0) if left else (6.0, -3.0)
+        axis.annotate(EVENTS.get(row.event, row.event), place, **at)
+    axis.set_yscale("log")
+    axis.set_title(f"p$_{{{m}}}$ of the beam at {frequency:.2f} Hz", loc="left")
+    plotting.label(axis.xaxis, plotting.EXCESS, "%")
+    plotting.label(axis.yaxis, "approach speed", "mm/s")
+    plotting.legend_below(figure, [axis], 2)
+    return figure
+
+
+@plotting.in_house_style
+def draw_bands(scene: Scene, path: Sequence[NordmarkMap], *, letters: bool) -> Figure:
     """The bands as rho -> 0 and the path of the experiment."""
     figure, axis = plotting.new_figure(height=0.075)
     mode, rates = scene.single_mode, np.geomspace(100.0, 1e-3, 80)
@@ -106,16 +145,23 @@ def draw_bands(scene: Scene, path: Sequence[NordmarkMap]) -> Figure:
         gamma = np.exp(-np.concatenate([rates, rates[::-1]]) / f)
         alpha = 2.0 * np.sqrt(gamma) * np.cos(2.0 * np.pi / (f * mode.free_period_s))
         axis.fill(alpha, gamma, color=plotting.PALETTE[m % 6 + 1], alpha=0.35, linewidth=0.4)
-        axis.text(0.5 * (alpha[79] + alpha[80]), 1.015, f"{m}", fontsize=NOTE, ha="center")
-    axis.plot([p.alpha for p in path], [p.gamma for p in path], color="black", linewidth=1.4)
+        axis.text(
+            0.5 * (alpha[79] + alpha[80]),
+            1.055 if m == 7 else 1.015,
+            f"p$_{{{m}}}$",
+            fontsize=NOTE,
+            ha="center",
+        )
     low, high = (corresponding(scene, f) for f in FREQUENCIES_HZ)
-    line = {"arrowstyle": "-", "linewidth": 0.6}
-    place = path[60].alpha, path[60].gamma
-    axis.annotate(f"{low:g} to {high:g} Hz", place, xytext=(0.05, 0.62), fontsize=NOTE, arrowprops=line)
+    words = f"path from {low:.4g} to {high:.4g} Hz"
+    axis.plot([p.alpha for p in path], [p.gamma for p in path], color="black", linewidth=1.4, label=words)
     own = [nordmark_at(scene, f) for f in sorted(scene.drive.frequencies_hz)]
-    axis.plot([p.alpha for p in own], [p.gamma for p in own], **plotting.LETTER_POINTS, label="letter")
+    look = plotting.LETTER_POINTS if letters else {**plotting.LETTER_POINTS, "marker": "o"}
+    words = "letter's transitions" if letters else "drive frequencies of the scene"
+    axis.plot([p.alpha for p in own], [p.gamma for p in own], **look, label=words)
     axis.set_ylim(bottom=0.02)
-    plotting.label(axis.xaxis, "α")
-    plotting.label(axis.yaxis, "γ")
-    axis.legend(loc="lower right")
+    plotting.label(axis.xaxis, "α of the map")
+    plotting.label(axis.yaxis, "γ of the map")
+    axis.set_title("bands of p$_m$", loc="left", pad=14.0)
+    plotting.legend_below(figure, [axis], 2)
     return figure

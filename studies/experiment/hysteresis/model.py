@@ -20,12 +20,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from typing import Annotated
 
 import numpy as np
 
 from beam import ModalModel
 from contact import NordmarkMap
-from contact.orbits import KickFamily, PeriodicOrbit, Shooting, fold_along_frequency, fold_excess
+from contact.orbits import KickFamily, PeriodicOrbit, Shooting, fold_along_frequency, fold_excess, follow
 from studies.physics.descriptions import fold_at
 from studies.physics.two_parameters import fold_of_kicks, one_mode_fold
 from studies.shell.scene import Scene, band_of, beam_at, corresponding, nordmark_at, periods_of
@@ -55,6 +56,9 @@ FREQUENCIES_HZ = (19.6, 23.8)
 EDGE = 1e-7
 """Distance of the last frequency in a band from its upper edge, relative to the band."""
 
+SPEEDS, BRANCH_STEP = (2e-3, 4.0), 0.05
+"""Ends of a branch, in speeds of its fold, and its longest step of arc length."""
+
 BELOW_BAND = 0.5
 """How far below its band in the map a period is looked for, in widths of the band: there it coexists."""
 
@@ -69,16 +73,16 @@ class Folds:
 
     frequency_hz: float
     m: int
-    map_printed: float | None = None
-    map_measured_kick: float | None = None
+    map_printed: Annotated[float | None, "map as printed"] = None
+    map_measured_kick: Annotated[float | None, "map with the beam's kick for 1 + τ"] = None
     map: float | None = None
-    single_mode: float | None = None
-    measured_kick: float | None = None
-    kick_of_velocity: float | None = None
-    two_parameters: float | None = None
-    all_mode_kick: float | None = None
+    single_mode: Annotated[float | None, "Eq. (1)"] = None
+    measured_kick: Annotated[float | None, "one mode, the beam's kick"] = None
+    kick_of_velocity: Annotated[float | None, "one mode, kick against velocity"] = None
+    two_parameters: Annotated[float | None, "one mode, restitution and delay"] = None
+    all_mode_kick: Annotated[float | None, "kick of all modes"] = None
     beam: float | None = None
-    beam_admissible: bool | None = None
+    beam_admissible: Annotated[bool | None, "the beam's orbit touches once"] = None
 
     def ratio(self, description: str, reference: str = "beam") -> float | None:
         """Its hysteresis over that of the reference; None unless both end on the same side of grazing."""
@@ -156,8 +160,8 @@ class Inside:
 
     period: int
     frequency_hz: float
-    map: float
-    eq1: float
+    map: Annotated[float, "hysteresis 1 − F_m/F_g of the map"]
+    eq1: Annotated[float, "hysteresis 1 − F_m/F_g of Eq. (1)"]
 
 
 def inside_band(scene: Scene, count: int, period: int) -> list[Inside]:
@@ -173,6 +177,35 @@ def inside_band(scene: Scene, count: int, period: int) -> list[Inside]:
             eq1=0.0 - (fold_at("single_mode", scene, frequency, period) or 0.0),
         )
         for frequency in places.tolist()
+    ]
+
+
+@dataclass(frozen=True, kw_only=True)
+class OnBranch:
+    """An orbit p_m of the beam on its branch."""
+
+    excess: float
+    speed: Annotated[float, "approach speed [m/s]"]
+    stable: bool
+    admissible: Annotated[bool, "touches the stop nowhere else"]
+    event: Annotated[str, "event of the branch; empty between events"]
+
+
+def branch_of(scene: Scene, frequency: float, m: int, model: ModalModel) -> list[OnBranch]:
+    """The orbits p_m of the beam at `frequency` [Hz] by their speed; empty where the branch has no fold."""
+    family = Shooting(oscillator=beam_at(scene, frequency, model), period=m)
+    fold = family.fold()
+    if fold is None:
+        return []
+    family = Shooting(oscillator=family.oscillator, period=m, impacts=fold.impacts)
+    speeds = {"low": SPEEDS[0] * fold.speed, "high": SPEEDS[1] * fold.speed}
+    branch = follow(family, fold, **speeds, step=BRANCH_STEP)
+    found = [(orbit, "") for orbit in branch.orbits] + [(event.orbit, event.kind) for event in branch.events]
+    return [
+        OnBranch(
+            excess=one.excess, speed=one.speed, stable=one.stable, admissible=one.admissible, event=event
+        )
+        for one, event in sorted(found, key=lambda pair: pair[0].speed)
     ]
 
 

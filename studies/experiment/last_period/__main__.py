@@ -28,10 +28,11 @@ from typing import Annotated
 from studies.experiment.last_period import changes, pairs
 from studies.experiment.last_period.causes import Effect, causes_of, effect_of
 from studies.experiment.last_period.changes import DESCRIPTIONS, changes_of, transitions_after, transitions_at
-from studies.experiment.last_period.clouds import Clouds, clouds_of, frequency_of
+from studies.experiment.last_period.clouds import Clouds, clouds_of, frequency_of, key_of
 from studies.letter import AMPLITUDE_STABILITY, PERIODS
 from studies.physics.descriptions import strobed_at
 from studies.physics.drive_noise import DRIFTS, SMALL, TIMES, DriveNoise
+from studies.shell.columns import written
 from studies.shell.scene import Scene, SceneError, harmonic, model_of, single_mode_at
 from studies.shell.study import Run, study
 
@@ -66,7 +67,9 @@ def last_period(
     ]
     after = run.attempt(partial(transitions_after, scene, base), changes_of(scene, run.quick), "changes")
     rows = base + [row for found in after for row in found or ()]
-    run.table("sensitivity", rows, "Born period and fold after each change.", of=changes.Transition)
+    run.table(
+        "sensitivity", rows, "Period born at grazing, and fold, after each change.", of=changes.Transition
+    )
     from studies.experiment.last_period import figure  # matplotlib is slow to import
 
     run.figure("fold_against_parameter", figure.draw_tornado(rows), figure.TORNADO)
@@ -76,8 +79,7 @@ def last_period(
     run.table(
         "p10",
         effects,
-        "Period born at the letter's last f T at excess 2.5e-4, 1e-3, 4e-3 and 1e-2, "
-        "how many of its other five are; excesses with p10 and with all six.",
+        "The periods that are born with each cause at the frequencies of the letter.",
         of=Effect,
     )
     intervals = pair_intervals(scene, run)
@@ -88,10 +90,9 @@ def last_period(
     noisy = [(DESCRIPTIONS[name], strobed_at(name, scene, f, model), m) for name, f, m in places]
     found = run.attempt(partial(clouds_of, noises), noisy, "periods in noise")
     clouds = [row for row in found if row]
-    kinds = [noise.name for noise in noises]
-    caption = f"p_m at an excess of 1e-3 in noise ({', '.join(kinds)}): distances of clouds over their width."
+    caption = "The clouds of strobe points of p_m in noise of the drive, at an excess of 0.001."
     run.table("clouds", clouds, caption, of=Clouds)
-    merged = judge(run, kinds, effects, clouds)
+    merged = judge(run, noises, effects, clouds)
     return {
         "rows": rows,
         "p10": effects,
@@ -103,44 +104,46 @@ def last_period(
 
 
 def pair_intervals(scene: Scene, run: Run) -> list[pairs.Interval]:
-    """The free periods at which the letter's pairs are born, and the answer to what they say of T."""
+    """The free periods at which the letter's pairs are born."""
     if not run.letters:
         return []
     intervals_of = partial(pairs.intervals_of, single_mode_at(scene, FREQUENCY_HZ))
     columns = run.map(intervals_of, pairs.EXCESSES[: 2 if run.quick else None], "excesses of the pairs")
     rows = [row for column in columns for row in column]
     run.table("pairs", rows, "Free periods with the letter's six pairs.", of=pairs.Interval, show=())
-    if not run.quick:
-        run.answer("period", pairs.sentence(rows))
+    off = next(row.missed_by_s for row in rows if row.pairs == "all" and row.excess == 0.0)
+    if off:
+        size, way = f"{1e3 * abs(off):.2f} ms", "shorter" if off > 0.0 else "longer"
+        run.finding(
+            f"In the map the six periods of the letter need a free period {size} {way} than its error allows."
+        )
     return rows
 
 
 def judge(
-    run: Run, kinds: Sequence[str], effects: Sequence[Effect], clouds: Sequence[Clouds]
+    run: Run, noises: Sequence[DriveNoise], effects: Sequence[Effect], clouds: Sequence[Clouds]
 ) -> dict[str, int | None]:
-    """Verdict and answer on the last period; first m of Eq. (1) whose clouds merge in each noise."""
-    of_eq_1 = [row for row in clouds if row.description == "Eq. (1)" and row.apart]
+    """Verdict and findings on the last period; first m of Eq. (1) whose clouds merge in each noise."""
+    of_eq_1 = [(row.m, row.apart) for row in clouds if row.description == "Eq. (1)" and row.apart]
     merged = {
-        kind: next((row.m for row in of_eq_1 if row.apart and not row.apart[k] >= 1.0), None)
-        for k, kind in enumerate(kinds)
+        noise.name: next((m for m, apart in of_eq_1 if not apart[key_of(noise)] >= 1.0), None)
+        for noise in noises
     }
-    first = merged[kinds[0]]
+    kind, first = next(iter(merged.items()))
     run.verdict(
         "last_period",
         "agrees" if first is not None and 0 <= first - HIGHEST <= 1 else "in part",
-        found=", ".join(f"{f'p{m}' if m else 'none'} ({kind})" for kind, m in merged.items()),
+        found=", ".join(f"{f'p{m}' if m else 'none'} ({name})" for name, m in merged.items()),
         note="first period whose closest strobe points merge in noise of the amplitude's stability",
     )
-    plain, others = effects[1], len(PERIODS) - 1
-    near = [row.cause for row in effects[3:] if row.born[1] == HIGHEST and row.others[1] == others]
-    run.answer(
-        "last_period",
-        "In Eq. (1) all six periods are born together "
-        + (f"only from an excess of {plain.six_from:.1e} on. " if plain.six_from else "at no excess. ")
-        + (f"This excess falls to 1e-3 with {'; with '.join(near)}. " if near else "")
-        + "The letter prints neither the excess at which a period was read nor gap, width, exciter and the "
-        "base on which T was measured: it cannot decide between these. "
-        + f"In {kinds[0]} noise the strobe points of Eq. (1) merge "
-        + (f"from p{first} on." if first else "for no period."),
-    )
+    noisy = f"In {f'a {kind}' if noises[0].correlation_s else 'white noise'} of the drive amplitude"
+    if of_eq_1 and first is None:
+        run.finding(f"{noisy} the strobe points of Eq. (1) stay apart for every period that was tried.")
+    elif first is not None:
+        last = ", the last period that the letter saw" if run.letters and first == HIGHEST else ""
+        run.finding(f"{noisy} the strobe points of Eq. (1) merge from p{first} on{last}.")
+    if run.letters:
+        plain = effects[1].six_from
+        when = f"only from an excess of {written(plain, 2)} on" if plain else "at no excess"
+        run.finding(f"Eq. (1) has all six periods of the letter {when}, if nothing else acts.")
     return merged

@@ -14,7 +14,7 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -131,26 +131,21 @@ def causes_of(scene: Scene, modes: ModalModel) -> list[Cause]:
 
 @dataclass(frozen=True, kw_only=True)
 class Effect:
-    """The periods that are born with a cause.
-
-    Attributes
-    ----------
-    born : tuple of int or None
-        The period at the letter's last frequency, at each of `EXCESSES` (0: not settled).
-    others : tuple of int
-        How many of the letter's other transitions agree there.
-    p10_from, p10_to, six_from, six_to : float or None
-        Least and greatest excess of a grid with p10, and with all six periods of the letter.
-    """
+    """The periods that are born with a cause; excesses are those of a grid."""
 
     cause: str
-    effective_period_s: float | None
-    born: tuple[int | None, ...]
-    others: tuple[int, ...]
-    p10_from: float | None
-    p10_to: float | None
-    six_from: float | None
-    six_to: float | None
+    effective_period_s: Annotated[float | None, "free period of small deviations at the gap [s]"]
+    born: Annotated[Mapping[str, int | None], "period at the last frequency; 0 where it does not settle"]
+    others: Annotated[Mapping[str, int], "how many of the other transitions agree"]
+    p10_from: Annotated[float | None, "least excess with p10"]
+    p10_to: Annotated[float | None, "greatest excess with p10"]
+    six_from: Annotated[float | None, "least excess with all six periods"]
+    six_to: Annotated[float | None, "greatest excess with all six periods"]
+
+
+def key_of(excess: float) -> str:
+    """An excess in the name of a column."""
+    return f"at_excess_{excess:g}"
 
 
 def effect_of(scene: Scene, step: float, cause: Cause) -> Effect:
@@ -173,6 +168,6 @@ def effect_of(scene: Scene, step: float, cause: Cause) -> Effect:
         p10_to=max(ten, default=None),
         six_from=min(six, default=None),
         six_to=max(six, default=None),
-        born=tuple(period(last, e) for e in EXCESSES),
-        others=tuple(sum(period(f, e) == letter[f] for f in five) for e in EXCESSES),
+        born={key_of(e): period(last, e) for e in EXCESSES},
+        others={key_of(e): sum(period(f, e) == letter[f] for f in five) for e in EXCESSES},
     )

@@ -9,12 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Annotated
 
 from beam import ModalModel
 from contact.orbits import born_period, fold_excess
 from studies.letter import BREAKDOWN, FREE_PERIOD_ERROR_S
 from studies.physics.calibration import calibrate_damping, calibrate_thickness, free_period
 from studies.physics.descriptions import or_none, strobed_at
+from studies.shell.columns import minus
 from studies.shell.scene import Scene, model_of
 
 DESCRIPTIONS = {"map": "map", "single_mode": "Eq. (1)", "beam": "beam"}
@@ -37,8 +39,11 @@ class Change:
 
     @property
     def text(self) -> str:
-        """The change for a table."""
-        return f"x {self.by:g}" if self.unit is None else f"{self.by:+g} {self.unit}".rstrip()
+        """The change for a person."""
+        if self.unit is None:
+            return f"× {self.by:g}"
+        by, unit = (1e3 * self.by, "ms") if self.unit == "s" else (self.by, self.unit)
+        return minus(f"{by:+g} {unit}").rstrip()
 
     def __str__(self) -> str:
         return f"{self.parameter} {self.text}"
@@ -108,26 +113,16 @@ def changed(scene: Scene, change: Change) -> tuple[Scene, ModalModel]:
 
 @dataclass(frozen=True, kw_only=True)
 class Transition:
-    """The transition at one frequency in one description after one change.
-
-    Attributes
-    ----------
-    m : int
-        The period that is born without the change (0: none).
-    born : int or None
-        The period that is born with it at excess 1e-3; 0 if the motion does not settle, None if it fails.
-    fold : float or None
-        F_m/F_g - 1 at the fold of p_m.
-    """
+    """The transition at one frequency in one description after one change."""
 
     frequency_hz: float
     description: str
-    parameter: str = "none"
-    change: str = ""
-    sign: int = 0
-    m: int
-    born: int | None
-    fold: float | None
+    parameter: Annotated[str, "changed parameter"] = "none"
+    change: Annotated[str, "change; × is a factor"] = ""
+    sign: Annotated[int, "direction of the change; −1 for lowered, 1 for raised"] = 0
+    m: Annotated[int, "period born without the change; 0 for none"]
+    born: Annotated[int | None, "period born with it at excess 0.001; 0 where the motion does not settle"]
+    fold: Annotated[float | None, "fold of p_m, F/F_g − 1; where p_m ends as the drive is lowered"]
 
 
 def transitions_at(

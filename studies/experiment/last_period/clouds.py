@@ -10,8 +10,9 @@ amplitude above grazing.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,31 +39,25 @@ SEED = 1996
 
 Points = NDArray[np.float64]
 Counts = NDArray[np.int64]
+ByNoise = Mapping[str, float]
 
 
 @dataclass(frozen=True, kw_only=True)
 class Clouds:
-    """The clouds of p_m, one number for each kind of noise; None where another period is born.
-
-    Attributes
-    ----------
-    born : int or None
-        The period that is born without noise at excess 1e-3.
-    apart : tuple of float
-        Least distance of neighbouring clouds over their mean width.
-    records : tuple of float
-        Part of the records of 40 strobes in which no two clouds overlap.
-    held : tuple of float
-        Part of the waitings in which p_m is seen at an excess of one standard deviation.
-    """
+    """The clouds of p_m, a number for each kind of noise; None where another period is born."""
 
     description: str
     m: int
     frequency_hz: float
-    born: int
-    apart: tuple[float, ...] | None = None
-    records: tuple[float, ...] | None = None
-    held: tuple[float, ...] | None = None
+    born: Annotated[int | None, "period born without noise; 0 for none"]
+    apart: Annotated[ByNoise | None, "least distance of neighbouring clouds over their mean width"] = None
+    records: Annotated[ByNoise | None, "part of the records of 40 strobes in which no clouds overlap"] = None
+    held: Annotated[ByNoise | None, "part of the waitings in which p_m is seen next to grazing"] = None
+
+
+def key_of(noise: DriveNoise) -> str:
+    """The kind of noise in the name of a column."""
+    return noise.name.replace(" ", "_")
 
 
 def frequency_of(scene: Scene, m: int) -> float:
@@ -112,7 +107,9 @@ def clouds_of(noises: Sequence[DriveNoise], described: tuple[str, StroboscopicMa
     )
     if row.born != m:
         return row
-    between, records, held = zip(*(_in_noise(noise, strobed, m) for noise in noises), strict=True)
+    found = zip(*(_in_noise(noise, strobed, m) for noise in noises), strict=True)
+    keys = [key_of(noise) for noise in noises]
+    between, records, held = (dict(zip(keys, numbers, strict=True)) for numbers in found)
     return replace(row, apart=between, records=records, held=held)
 
 

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from studies.experiment.last_period.changes import Transition
 from studies.physics.descriptions import word
 from studies.shell import plotting
+from studies.shell.columns import written
 from studies.shell.plotting import BLUE, NOTE, PAGE, VERMILION
 
 TORNADO = (
@@ -25,45 +26,58 @@ LEFT, RIGHT = 0.22, 4.5
 
 @plotting.in_house_style
 def draw_tornado(rows: Sequence[Transition]) -> Figure:
-    """The fold after a change over the fold without it, one panel for each frequency."""
+    """The hysteresis after a change over that without it, one panel for each frequency."""
     rows = [row for row in rows if row.description == "beam"]
-    before = [row for row in rows if not row.sign]
-    parameters = list(dict.fromkeys(row.parameter for row in rows if row.sign))[::-1]
+    before = {row.frequency_hz: row for row in rows if not row.sign}
+    after = [row for row in rows if row.sign]
+    moved = [row for row in after if (row.fold, row.born) != (before[row.frequency_hz].fold, row.m)]
+    parameters = list(dict.fromkeys(row.parameter for row in moved))[::-1]
+    changes = {(row.parameter, row.sign): row.change for row in after}
     columns = min(3, len(before))
     lines = math.ceil(len(before) / columns)
-    height = (0.016 + 0.0044 * len(parameters)) * lines + 0.012
+    height = max((0.019 + 0.0044 * len(parameters)) * lines + 0.014, 0.145)  # a slide needs the width
     shared = {"squeeze": False, "sharey": True, "sharex": True}
     figure, axes = plotting.new_figure(lines, columns, width=PAGE, height=height, **shared)
     for axis in axes.flat[len(before) :]:
         axis.set_visible(False)
-    for number, (axis, base) in enumerate(zip(axes.flat, before, strict=False)):
-        for row in rows:
-            if row.sign and row.frequency_hz == base.frequency_hz:
-                draw_change(axis, row, base.fold, parameters.index(row.parameter))
-        depth = "none" if base.fold is None else f"{-base.fold:.1e}"
-        plotting.panel(axis, number, f"{base.frequency_hz:.2f} Hz, p$_{{{base.m}}}$ ({depth})")
+    for number, (axis, base) in enumerate(zip(axes.flat, before.values(), strict=False)):
+        deep = base.fold is not None and base.fold < 0.0
+        for row in after:
+            if row.frequency_hz == base.frequency_hz and row.parameter in parameters:
+                draw_change(axis, row, base.fold if deep else None, parameters.index(row.parameter))
+        plotting.panel(axis, number, f"{base.frequency_hz:.2f} Hz, p$_{{{base.m}}}$")
+        words = f"without: {written(-(base.fold or 0.0), 2)}" if deep else "without a change: none"
+        axis.text(
+            0.99, -0.95, words, transform=axis.get_yaxis_transform(), ha="right", va="center", size=NOTE
+        )
         axis.axvline(1.0, color="0.3", linewidth=0.7, zorder=3)
-        axis.set(xscale="log", xlim=(LEFT, RIGHT), ylim=(-0.6, len(parameters) - 0.4))
+        axis.set(xscale="log", xlim=(LEFT, RIGHT), ylim=(-1.4, len(parameters) - 0.4))
         axis.set_xticks([0.25, 0.5, 1.0, 2.0, 4.0], ["0.25", "0.5", "1", "2", "4"])
         axis.minorticks_off()
-        axis.set_yticks(range(len(parameters)), parameters)
+        both = [", ".join(changes[p, way] for way in WAYS if (p, way) in changes) for p in parameters]
+        names = [f"{name} {sizes}" for name, sizes in zip(parameters, both, strict=True)]
+        axis.set_yticks(range(len(parameters)), names)
     for axis in axes[-1]:
-        plotting.label(axis.xaxis, "hysteresis / (hysteresis before)")
-    for axis in axes[:, 0]:
-        plotting.label(axis.yaxis, "changed parameter")
-    plotting.legend_below(figure, axes.flat, 3)
+        plotting.label(axis.xaxis, "factor on the hysteresis")
+    figure.supylabel("changed parameter")
+    plotting.legend_below(figure, axes.flat, 5)
     return figure
 
 
 def draw_change(axis: Axes, row: Transition, before: float | None, place: int) -> None:
-    """One change at one frequency; `before` is the fold without."""
+    """One change at one frequency; `before` is the fold without, None where that is no hysteresis."""
     way, colour, shift = WAYS[row.sign]
-    factor = row.fold / before if row.fold is not None and before else None
-    if row.fold is None and before is not None:
-        axis.plot(LEFT, place + shift, "kx", markersize=3.0, clip_on=False, label=f"{way}: none left")
-    elif factor is not None and factor > 0.0:
-        axis.barh(place + shift, factor - 1.0, 0.34, left=1.0, color=colour, zorder=2, label=way)
+    high, factor = place + shift, 0.0 if row.fold is None or before is None else row.fold / before
+    mark: plotting.Style = {"linestyle": "none", "markersize": 3.0, "color": "black", "clip_on": False}
+    if factor > 0.0:
+        axis.barh(high, factor - 1.0, 0.34, left=1.0, color=colour, zorder=2, label=way)
+    elif before is not None:
+        gone = "no fold" if row.fold is None else "no hysteresis left"
+        axis.plot(LEFT, high, marker="x" if row.fold is None else "o", label=gone, **mark)
+    if 0.0 < factor < LEFT or factor > RIGHT:
+        end, tip = (LEFT, "<") if factor < LEFT else (RIGHT, ">")
+        axis.plot(end, high, marker=tip, label="bar goes on beyond the axis", **mark)
     if row.born != row.m:
         words = f"{word(row.born)} at {row.change}"
         at: plotting.Style = {"xycoords": ("axes fraction", "data"), "ha": "right", "va": "center"}
-        axis.annotate(words, (0.99, place + shift), **at, fontsize=NOTE)
+        axis.annotate(words, (0.99, high), **at, fontsize=NOTE)

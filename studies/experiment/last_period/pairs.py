@@ -12,6 +12,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from itertools import groupby
+from typing import Annotated
 
 import numpy as np
 
@@ -30,22 +31,15 @@ PRINTED_S = FREE_PERIOD_S - FREE_PERIOD_ERROR_S, FREE_PERIOD_S, FREE_PERIOD_S + 
 
 @dataclass(frozen=True)
 class Interval:
-    """Free periods [s] at which p_m of one pair, or of several, is born; empty if lowest is above highest.
-
-    ``from_m`` and ``to_m`` set the ends; the printed 40.80 +- 0.02 ms lies ``missed_by_s`` above the interval
-    (below it: negative).
-    """
+    """Free periods at which p_m of one pair, or of several, is born; empty if lowest is above highest."""
 
     pairs: str
-    excess: float
-    lowest_s: float
-    highest_s: float
-    from_m: int
-    to_m: int
-    missed_by_s: float
-
-    def __str__(self) -> str:
-        return f"{1e3 * self.lowest_s:.3f} (p{self.from_m}) to {1e3 * self.highest_s:.3f} ms (p{self.to_m})"
+    excess: Annotated[float, "excess F/F_g − 1; 0 for the map"]
+    lowest_s: Annotated[float, "shortest free period [s]"]
+    highest_s: Annotated[float, "longest free period [s]"]
+    from_m: Annotated[int, "m that sets the shortest"]
+    to_m: Annotated[int, "m that sets the longest"]
+    missed_by_s: Annotated[float, "printed period beyond the interval [s]; negative where it is shorter"]
 
 
 def is_born(single: ImpactOscillator, excess: float, frequency: float, period: float) -> bool:
@@ -92,15 +86,6 @@ def intervals_of(single: ImpactOscillator, excess: float) -> list[Interval]:
 
     every = shared("all", list(ends))
     rows = [*(shared(f"p{m}", [m]) for m in ends), every]
-    rows.append(shared(f"all, f +- {FREQUENCY_ERROR_HZ:g} Hz", list(ends), FREQUENCY_ERROR_HZ))
+    rows.append(shared(f"all, f ± {FREQUENCY_ERROR_HZ:g} Hz", list(ends), FREQUENCY_ERROR_HZ))
     less = dict.fromkeys((every.from_m, every.to_m))
     return rows + [shared(f"all but p{m}", [k for k in ends if k != m]) for m in less]
-
-
-def sentence(rows: Sequence[Interval]) -> str:
-    """What the pairs need, for the page."""
-    of = {row.excess: row for row in rows if row.pairs == "all"}
-    return (
-        f"By the bands of the map the six printed pairs need T = {of[0.0]}; the letter prints 40.80 +- 0.02 "
-        f"ms. Eq. (1) needs {of[1e-3]} at an excess of 1e-3, and {of[4e-3]} at 4e-3."
-    )

@@ -33,6 +33,7 @@ import numpy as np
 from studies import letter
 from studies.experiment.soft_wall.closed_forms import SoftWall
 from studies.experiment.soft_wall.model import Beam, Doubling, Kick, beam_of, doubling_of, kicks_of
+from studies.shell.columns import written
 from studies.shell.options import Within
 from studies.shell.scene import Scene, SceneError, harmonic, single_mode_at
 from studies.shell.study import Run, study
@@ -70,12 +71,17 @@ def soft_wall(
     job = partial(beam_of, scene, excesses=np.geomspace(1e-7, 1e-1, 13 if run.quick else 37).tolist())
     (of_beam,) = run.attempt(job, [shown], "beams")
     beam, more = of_beam or (None, [])
-    run.table("kicks", [*kicks, *more], "Kick velocity of one collision [m/s].", of=Kick, show=())
-    run.table("doublings", doublings, "Excess F/F_g - 1 at which p1 doubles its period.", of=Doubling)
+    run.table("kicks", [*kicks, *more], "Kick of one collision.", of=Kick, show=())
+    run.table("doublings", doublings, "Excess at which p1 doubles its period.", of=Doubling)
     from studies.experiment.soft_wall import figure  # matplotlib is slow to import
 
-    run.figure("kick", figure.draw_kicks([*kicks, *more]), figure.KICKS)
+    run.figure("kick", figure.draw_kicks([*kicks, *more], run.letters), figure.KICKS)
     judge_wall(run, doublings)
+    if beam and beam.square_root_from is not None:
+        end = written(beam.square_root_from, 2)
+        run.finding(
+            f"A Hertz contact smooths the square root in the kick of the beam below an excess of {end}."
+        )
     if beam and scene.contact.law == "hertz":
         judge_beam(run, beam)
     return {"rows": doublings, "beam": beam}
@@ -88,13 +94,20 @@ def judge_wall(run: Run, doublings: Sequence[Doubling]) -> None:
         return
     falls = all(a[2] > b[2] for a, b in pairwise(found) if a[0] == b[0])
     first = [row for row in found if row[0] == found[0][0]]
-    ends = ", ".join(f"{excess:.2g} at K = {hardness:g}" for _, hardness, excess in (first[0], first[-1]))
+    ends = ", ".join(f"{written(row[2], 2)} at K = {row[1]:g}" for row in (first[0], first[-1]))
     run.verdict(
         "soft_wall",
         "agrees" if falls else "differs",
         found=f"Eq. (1): doubling at {ends}",
         note=f"excess of the period doubling at {first[0][0]:.2f} Hz",
     )
+    most = f"an excess of {written(max(row[2] for row in found), 2)}"
+    if len(first) > 1 and falls:
+        run.finding(
+            f"The softer the wall, the larger the amplitude at which p1 doubles its period: up to {most}."
+        )
+    else:
+        run.finding(f"At a soft wall p1 doubles its period at {most} or less.")
 
 
 def judge_beam(run: Run, beam: Beam) -> None:
@@ -102,14 +115,15 @@ def judge_beam(run: Run, beam: Beam) -> None:
     end, lost, stable = beam.doubling_excess, beam.unstable_excess, letter.AMPLITUDE_STABILITY
     if end is None or lost is None:
         return
-    below, loss = "within what the letter could resolve", f"p1 doubles its period at {end:.2g}"
+    below, loss = "within what the letter could resolve", f"p1 doubles its period at {written(end, 2)}"
     if lost < stable:
-        times = f"{stable / lost:.0f} times below the letter's amplitude stability"
-        below = f"{times}, which is why it was not seen"
+        below = (
+            f"{stable / lost:.0f} times below the letter's amplitude stability, which is why it was not seen"
+        )
     if beam.turns:
         loss = (
-            f"p1 loses its stability at {lost:.2g} by a complex pair of multipliers; a multiplier passes "
-            f"-1 at {end:.2g}, where p1 is unstable already"
+            f"p1 loses its stability at {written(lost, 2)} by a complex pair of multipliers; a multiplier "
+            f"passes −1 at {written(end, 2)}, where p1 is unstable already"
         )
     run.verdict(
         "smoothing",
@@ -117,10 +131,5 @@ def judge_beam(run: Run, beam: Beam) -> None:
         found=f"beam: {loss}",
         note=f"the square root is smoothed; the loss is {below}",
     )
-    if beam.square_root_from is not None and beam.half_excess is not None:
-        run.answer(
-            "higher_modes",
-            f"The square root holds from an excess of {beam.square_root_from:.1e} on; half of the kick is "
-            f"left at {beam.half_excess:.1e}. Below, the Hertz contact smooths it: {loss}. This loss of "
-            f"stability is {below}.",
-        )
+    hidden = ", too close to grazing for the letter to see" if run.letters and lost < stable else ""
+    run.finding(f"The contact keeps p1 of the beam stable up to an excess of {written(lost, 2)}{hidden}.")

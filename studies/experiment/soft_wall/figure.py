@@ -12,15 +12,13 @@ from studies.experiment.soft_wall.model import Kick
 from studies.shell import plotting
 from studies.shell.plotting import EXCESS, PAGE, in_house_style
 
-KICKS = (
-    "Kick of one collision against the excess: points, closed form (line) and, dashed, the law of a soft "
-    "touch. All go over into the power 1/2 of a hard one."
-)
+KICKS = "Kick of one collision against the excess. All laws go over into the power 1/2 of a hard wall."
+BEAM: plotting.Style = {"color": plotting.SKY, "marker": "h", "linestyle": "none"}
 CASES = {"lossless": "Eq. (1), elastic wall: power 3/2", "beam": "beam, Hertz contact: power 2"}
 
 
 @in_house_style
-def draw_kicks(rows: Sequence[Kick]) -> Figure:
+def draw_kicks(rows: Sequence[Kick], letters: bool) -> Figure:
     """Kick against excess with both power laws: walls of each K, and the beam."""
     figure, axes = plotting.new_figure(1, 2, width=PAGE, height=0.078, sharey=True)
     for number, (axis, case) in enumerate(zip(axes, CASES, strict=True)):
@@ -29,16 +27,24 @@ def draw_kicks(rows: Sequence[Kick]) -> Figure:
             excess, simulated, closed, soft, hard = np.array(
                 [(r.excess, r.kick_velocity, r.closed_form or np.nan, r.soft_law, r.hard_law) for r in curve]
             ).T
-            style, near = plotting.points(i % 7), soft < 3.0 * hard
+            style, near = plotting.points(i) if hardness else BEAM, soft < 3.0 * hard
             axis.loglog(excess[near], soft[near], color=style["color"], linestyle="--", linewidth=0.8)
             axis.loglog(excess, closed, color=style["color"], linewidth=0.8)
-            name = None if hardness is None else f"K = 10$^{{{np.log10(hardness):.0f}}}$"
+            name = "beam" if hardness is None else f"K = 10$^{{{np.log10(hardness):.0f}}}$"
             axis.loglog(excess, simulated, **style, markerfacecolor="white", label=name)
-        axis.loglog(excess, hard, color="0.45", linewidth=1.2, linestyle=":", label="hard wall, power 1/2")
-        plotting.mark_letter(axis.xaxis, letter.AMPLITUDE_STABILITY, along=0.02, words="letter:\nstability")
+        if letters:
+            plotting.mark_letter(
+                axis.xaxis, letter.AMPLITUDE_STABILITY, along=0.02, words="letter:\nstability"
+            )
         plotting.panel(axis, number, CASES[case])
         plotting.label(axis.xaxis, EXCESS)
+        if curve:
+            axis.loglog(
+                excess, hard, color="0.45", linewidth=1.2, linestyle=":", label="hard wall, power 1/2"
+            )
+    for style, name in (("-", "closed form"), ("--", "law of a soft touch")):
+        axes[0].plot([], [], style, color="0.3", linewidth=0.8, label=name)
     axes[0].set_ylim(bottom=0.3 * min((row.kick_velocity for row in rows), default=1e-6))
     plotting.label(axes[0].yaxis, "kick of one collision", "m/s")
-    plotting.legend_below(figure, axes[:1], 7)
+    plotting.legend_below(figure, axes, 4)
     return figure

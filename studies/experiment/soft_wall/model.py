@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 from scipy.optimize import brentq
@@ -26,35 +27,28 @@ RATIO = 1.05
 
 @dataclass(frozen=True, kw_only=True)
 class Kick:
-    """Kick velocity of the collision that ends the motion without impacts at `excess` [m/s], and its laws.
+    """Kick of the collision that ends the motion without impacts at `excess`, and its laws."""
 
-    `case` is "lossless" or "beam" (no hardness, no closed form).
-    """
-
-    case: str
-    hardness: float | None
+    case: Annotated[str, "model; lossless is Eq. (1) with an elastic wall"]
+    hardness: Annotated[float | None, "K; none for the beam"]
     excess: float
-    kick_velocity: float
-    closed_form: float | None
-    soft_law: float
-    hard_law: float
+    kick_velocity: Annotated[float, "kick of mode 1 [m/s]"]
+    closed_form: Annotated[float | None, "kick in closed form [m/s]; none for the beam"]
+    soft_law: Annotated[float, "kick of a soft touch [m/s]"]
+    hard_law: Annotated[float, "kick of a hard wall [m/s]"]
 
 
 @dataclass(frozen=True, kw_only=True)
 class Doubling:
-    """Excess of the period doubling of p1: by shooting and in closed form.
-
-    Where rounding of the multipliers leaves the `event` undecided, p1 is stable at the excess `stable_at` and
-    unstable at `unstable_at`.
-    """
+    """Excess of the period doubling of p1: by shooting and in closed form."""
 
     frequency_hz: float
-    hardness: float
-    event: str
-    excess: float | None
-    stable_at: float | None
-    unstable_at: float | None
-    closed_form: float | None
+    hardness: Annotated[float, "K"]
+    event: Annotated[str, "event; undecided where rounding of the multipliers hides it"]
+    excess: Annotated[float | None, "excess F/F_g − 1 of the period doubling; by shooting"]
+    stable_at: Annotated[float | None, "excess F/F_g − 1 at which p1 is stable; where undecided"]
+    unstable_at: Annotated[float | None, "excess F/F_g − 1 at which p1 is unstable; where undecided"]
+    closed_form: Annotated[float | None, "excess F/F_g − 1 of the period doubling, in closed form"]
 
 
 @dataclass(frozen=True, kw_only=True)

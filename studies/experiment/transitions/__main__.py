@@ -17,31 +17,27 @@ with its N modes:
     extracted        restitution and delay on the settled orbit, and the map with that restitution
     orbit diagram    strobed points in an upward and a downward scan that carry the physical state along
 
-In the figures filled points are the upward scan, open ones the downward scan. The dashed line is grazing,
-the band around it as wide as the letter's amplitude was stable. A grey line marks an amplitude at which the
-motion did not settle: its points, of one moment, are stored but not drawn.
+A grey line in the figures marks an amplitude at which the motion did not settle: its points, of one moment,
+are stored but not drawn.
 
 Run:     python -m studies, or python -m studies transitions [--quick] [--full]     --full takes some minutes;
          python -m studies --all runs every study
-Writes:  transitions.csv (a row a frequency and description), periods.csv (a line a frequency),
-         two_parameters.csv (a row a frequency: what was extracted), orbit_diagram.npz (points, period and
-         impacts by amplitude; period 0: not settled); the figures orbit_diagram (beam, at its read-out
-         point), orbit_diagram_two_parameters, orbit_diagram_single_mode, orbit_diagram_map
+Writes:  transitions.csv (a row a frequency and description), two_parameters.csv (a row a frequency: what was
+         extracted), orbit_diagram.csv (a row a strobed point); the figures orbit_diagram (beam, at its
+         read-out point), orbit_diagram_two_parameters, orbit_diagram_single_mode, orbit_diagram_map
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import Annotated
 
-import numpy as np
-
 from studies.experiment.transitions.model import AtFrequency, Scans, Transition, rows_at, scans
 from studies.letter import FREE_PERIOD_S
-from studies.physics.descriptions import TITLES, word, words
+from studies.physics.descriptions import TITLES, StrobePoint, strobe_points_of, word, words
 from studies.physics.two_parameters import Extracted
+from studies.shell.columns import written
 from studies.shell.run import Verdict
 from studies.shell.scene import Scene, harmonic, model_of
 from studies.shell.study import Run, study
@@ -53,22 +49,9 @@ NEARLY = 1.25
 """Factor within which two ends of an orbit count as one."""
 
 AT_THE_EDGE = (
-    "the edge between p10 and p11 lies where f T = 20/21, at 23.343 Hz for T = 40.80 ms: p10 at grazing "
-    "needs T below 40.70 ms, five times the printed error of 0.02 ms"
+    "the edge between p10 and p11 lies at 23.343 Hz, where f T = 20/21: p10 at grazing needs T below 40.70 ms"
 )
 """Why 23.40 Hz is p11."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Line:
-    """The descriptions at one frequency for a person: born period, and excess at which its orbit ends."""
-
-    frequency_hz: float
-    letter: str
-    map: str
-    single_mode: str
-    two_parameters: str
-    beam: str
 
 
 @study(needs={"born_period": 0.0, "fold": 0.07})
@@ -93,23 +76,25 @@ def transitions(
                 run.failed(where, reason)
     rows = [row for at in found for row in at.rows]
     parameters = [at.extracted for at in found if at.extracted is not None]
-    run.json("rows", rows)
-    run.table("transitions", rows, "Born periods, and how their orbits end.", of=Transition, show=())
-    lines = [line_of(at.rows) for at in found]
-    run.table("periods", lines, "Born period, and excess F/F_g - 1 at which its orbit ends.", of=Line)
-    run.table("two_parameters", parameters, "Restitution and delay on the settled orbits.", of=Extracted)
+    shown = ("frequency_hz", "description", "letter", "period", "excess_down", "ends_by")
+    words = "Periods that begin at grazing, and where their orbits end when the drive is lowered."
+    run.table("transitions", rows, words, of=Transition, show=shown)
+    words = "Restitution and time delay of the beam's collisions on the settled orbits."
+    run.table("two_parameters", parameters, words, of=Extracted)
     each = partial(scans, scene, model, full)
     diagrams = run.map(each, [at.rows for at in found], "orbit diagrams")
     store(run, found, diagrams)
-    caption = "Strobed points against the amplitude; filled: upward scan, open: downward scan. "
     from studies.experiment.transitions.figure import draw  # matplotlib is slow to import
 
-    for name in TITLES:
+    for name in reversed(TITLES):
         stem = "orbit_diagram" if name == "beam" else f"orbit_diagram_{name}"
-        drawn = draw(scene.readout.quantity, rows, diagrams, name)
-        run.figure(stem, drawn, caption + TITLES[name] + ".")
+        drawn = draw(scene.readout.quantity, rows, diagrams, name, letters=run.letters)
+        run.figure(
+            stem, drawn, f"Strobed points while the drive amplitude is raised and lowered: {TITLES[name]}."
+        )
     if (other := ends_beside_folds(rows)) and run.model_choice:
         run.warn(f"{other}: modes were chosen for folds, and more of them (modes.count) can move this end")
+    tell(run, rows)
     compare(run, rows, parameters)
     seen = [at.rows for at in found if at.rows[0].letter is not None]
     agrees = [of_frequency[0].frequency_hz for of_frequency in seen if judge(run, of_frequency)]
@@ -134,17 +119,34 @@ def in_words(rows: Sequence[Transition]) -> str:
     return words({row.description: row.period for row in rows})
 
 
-def line_of(rows: Sequence[Transition]) -> Line:
-    """The rows of one frequency as one line."""
-    ends = {row.description: "" if row.excess_down is None else f" {row.excess_down:+.4e}" for row in rows}
-    cells = {row.description: word(row.period) + ends[row.description] for row in rows}
-    return Line(frequency_hz=rows[0].frequency_hz, letter=word(rows[0].letter), **cells)
+def tell(run: Run, rows: Sequence[Transition]) -> None:
+    """The findings on the beam: its born periods, and the deepest of its orbits below grazing."""
+    beams = [row for row in rows if row.description == "beam" and row.period is not None]
+    ours = {row.frequency_hz: row.period for row in beams}
+    if run.letters:
+        other = [row.frequency_hz for row in beams if row.period != row.letter and row.letter is not None]
+        sentence = "Just above grazing the beam has the period that the letter saw, at every drive frequency"
+    else:
+        other = [row.frequency_hz for row in rows if row.period != ours.get(row.frequency_hz)]
+        sentence = "Map, Eq. (1) and beam have the same period just above grazing, at every drive frequency"
+    other = sorted(set(other))
+    but = f" but {other[0]:.2f} Hz" if len(other) == 1 else f" but {len(other)}" if other else ""
+    if beams and len(other) < len(ours):
+        run.finding(f"{sentence}{but}.")
+    deepest = min(beams, key=lambda row: row.excess_down or 0.0, default=None)
+    if deepest is not None and (deepest.excess_down or 0.0) < 0.0:
+        depth = written(-100.0 * (deepest.excess_down or 0.0), 2)
+        run.finding(
+            f"When the amplitude is lowered again, the beam's {word(deepest.period)} remains until {depth} % "
+            "below grazing, the widest hysteresis of all."
+        )
 
 
 def judge(run: Run, rows: Sequence[Transition]) -> bool:
     """Verdict on the transition at a frequency; returns whether all descriptions agree."""
     same, first = [row.period == row.letter for row in rows], rows[0]
-    note = "" if all(same) else f"at excess 0.01 {', '.join(word(row.born.get('0.01')) for row in rows)}"
+    above = {row.description: row.born.get("0.01") for row in rows}
+    note = "" if all(same) else f"at excess 0.01: {words(above)}"
     if note and first.frequency_hz == 23.40 and run.scene.single_mode.free_period_s == FREE_PERIOD_S:
         note += f"; {AT_THE_EDGE}"
     verdict: Verdict = "agrees" if all(same) else "in part" if any(same) else "differs"
@@ -164,29 +166,32 @@ def compare(run: Run, rows: Sequence[Transition], parameters: Sequence[Extracted
     ends = [(two.excess_down, beam.excess_down) for two, beam in same]
     close = sum(bool(a and b and 1.0 / NEARLY < a / b < NEARLY) for a, b in ends)
     of_map = sum(one.map == beams[one.frequency_hz].period for one in found)
-    text = (
-        "Eq. (1) with the restitution and delay of the beam's collisions has the beam's period at "
-        f"{len(same)} of {len(found)} frequencies, and the map with that restitution at {of_map}. Its orbits "
-        f"end where the beam's do, to a factor of {NEARLY:g}, at {close}."
-        + " Elsewhere higher modes still ring when the tip comes back, which no restitution and no delay of "
-        "a first collision contain." * (close < len(found))
-    )
-    run.answer("two_parameters", text)
+    if same:
+        where, missed = (
+            "every frequency" if len(same) == len(found) else "some frequencies",
+            len(found) - close,
+        )
+        end = f"; its orbits end elsewhere at {missed} of them" if missed else ""
+        words = "Eq. (1) with the beam's restitution and time delay has the beam's period at"
+        run.finding(f"{words} {where}{end}.")
     verdict: Verdict = "agrees" if close == len(found) else "in part" if same else "differs"
-    said = f"period at {len(same)}, end at {close} of {len(found)} frequencies"
-    run.verdict("two_parameters_born", verdict, found=said, note=text)
+    said = f"the beam's period at {len(same)}, its end to a factor of {NEARLY:g} at {close} of {len(found)}"
+    note = f"the map with that restitution has the beam's period at {of_map} of them"
+    if close < len(found):
+        note += "; elsewhere higher modes still ring when the tip comes back"
+    name = "orbit_diagram_two_parameters"
+    run.verdict("two_parameters_born", verdict, found=f"{said} frequencies", note=note, figure=name)
 
 
-def store(run: Run, found: Sequence[AtFrequency], diagrams: Iterable[Scans]) -> None:
-    """All scans, an array a column; failed amplitudes."""
-    arrays = dict[str, np.ndarray]()
+def store(run: Run, found: Sequence[AtFrequency], diagrams: Sequence[Scans]) -> None:
+    """The strobed points of all scans; failed amplitudes."""
+    points = list[StrobePoint]()
     for at, scanned in zip(found, diagrams, strict=True):
-        frequency = at.rows[0].frequency_hz
-        for name, ways in scanned.items():
+        for row in (row for row in at.rows if row.description in scanned):
+            ways = scanned[row.description]
+            points += strobe_points_of(row.frequency_hz, row.description, row.grazing_amplitude, ways)
             for way, diagram in ways.items():
-                stem = f"{name}_{frequency:.2f}_hz_{way}".replace(".", "p")
-                for column in ("excess", "points", "period", "impacts"):
-                    arrays[f"{stem}_{column}"] = getattr(diagram, column)
                 for reason in diagram.failures:
-                    run.failed(f"{frequency:g} Hz, {TITLES[name]}, {way}ward scan", reason)
-    run.arrays("orbit_diagram", **arrays)
+                    where = f"{row.frequency_hz:g} Hz, {TITLES[row.description]}, {way}ward scan"
+                    run.failed(where, reason)
+    run.table("orbit_diagram", points, "Strobed points of the orbit diagrams.", of=StrobePoint, show=())

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from typing import Any
 
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -14,9 +16,14 @@ from studies.physics.descriptions import Diagram
 from studies.shell import plotting
 from studies.shell.plotting import GUIDE
 
+ORDER = ("upward scan", "downward scan", "pale: orbit with several impacts", "not settled", "grazing")
+"""Names of the legend, the letter's last."""
 
-def draw(read: str, rows: Sequence[Transition], diagrams: Sequence[Scans], name: str) -> Figure:
-    """The panels of the letter's Fig. 2 for one description; `read`: the quantity at the read-out point."""
+
+def draw(
+    read: str, rows: Sequence[Transition], diagrams: Sequence[Scans], name: str, *, letters: bool
+) -> Figure:
+    """A panel a frequency for one description; `read`: the quantity at the read-out point."""
     rows = [row for row in rows if row.description == name]
     columns = min(3, len(rows))
     lines = math.ceil(len(rows) / columns)
@@ -27,41 +34,57 @@ def draw(read: str, rows: Sequence[Transition], diagrams: Sequence[Scans], name:
             axis.set_visible(False)
         for number, (axis, row, found) in enumerate(zip(axes.flat, rows, diagrams, strict=False)):
             if name in found:
-                panel(axis, found[name], None if name == "map" else row.grazing_amplitude)
+                panel(axis, row, found[name], letters)
             seen = "" if row.letter is None else f" (letter: p$_{{{row.letter}}}$)"
             words = f"p$_{{{row.period}}}$" if row.period else "no period"
             plotting.panel(axis, number, f"{row.frequency_hz:.2f} Hz: {words}{seen}")
-        sideways = (plotting.EXCESS, "10$^{-3}$") if name == "map" else ("excitation amplitude", "mm")
+        sideways = (plotting.EXCESS, "10$^{-3}$") if name == "map" else ("drive amplitude", "mm")
         upwards = {
             "map": ("$x$ of the map", "1"),
             "single_mode": ("tip displacement $ξ$", "mm"),
             "two_parameters": ("tip displacement $ξ$", "mm"),
             "beam": (f"read-out {read}", "mm" if read == "displacement" else "mrad"),
         }[name]
-        for axis in axes[-1, :]:
-            plotting.label(axis.xaxis, *sideways)
+        for place, axis in enumerate(axes.flat[: len(rows)]):
+            if place + columns >= len(rows):
+                plotting.label(axis.xaxis, *sideways)
         for axis in axes[:, 0]:
             plotting.label(axis.yaxis, *upwards)
-        plotting.legend_below(figure, axes.flat, 5, markerscale=1.5)
+        named = dict[str, Any]()
+        for axis in axes.flat:
+            named |= dict(zip(*axis.get_legend_handles_labels()[::-1], strict=True))
+        texts = sorted(named, key=lambda text: (*ORDER, text).index(text))
+        marks = [named[text] for text in texts]
+        figure.legend(marks, texts, loc="outside lower center", ncols=3, markerscale=1.5)
     return figure
 
 
-def panel(axis: Axes, found: Mapping[str, Diagram], grazing: float | None) -> None:
+def panel(axis: Axes, row: Transition, found: Mapping[str, Diagram], letters: bool) -> None:
     """Both scans at one frequency, against the amplitude [mm], for the map (no amplitude) the excess
     [1e-3]."""
+    grazing = None if row.description == "map" else row.grazing_amplitude
     moving = set[float]()
-    for way, look in (("down", plotting.DOWN), ("up", plotting.UP)):
+    for way, look in (("up", plotting.UP), ("down", plotting.DOWN)):
         diagram = found[way]
         amplitude = 1e3 * (diagram.excess if grazing is None else grazing * (1.0 + diagram.excess))
         settled = diagram.period > 0
+        # below grazing, beside the orbit that was born: longer ones with several impacts
+        beside = (diagram.excess < 0.0) & ~np.isin(diagram.period, (1, row.period or 0))
         moving |= {a for a, kind in zip(amplitude, diagram.kind, strict=True) if kind == "not settled"}
         points = diagram.points[settled] * (1.0 if grazing is None else 1e3)
-        plotting.strobe_points(axis, amplitude[settled], points, settled[settled], look, f"{way}ward scan")
+        plotting.strobe_points(axis, amplitude[settled], points, ~beside[settled], look, f"{way}ward scan")
+        if np.any(beside & settled):
+            pale: plotting.Style = {
+                "markeredgecolor": plotting.tint(look[0], plotting.PALE),
+                "markerfacecolor": "none",
+            }
+            axis.plot([], [], "o", markersize=look[2], **pale, label="pale: orbit with several impacts")
     for place, value in enumerate(sorted(moving)):
         axis.axvline(value, color="0.75", linewidth=0.5, zorder=1, label="_" if place else "not settled")
     at = 0.0 if grazing is None else 1e3 * grazing
-    stable = 1e3 * (letter.AMPLITUDE_STABILITY if grazing is None else letter.AMPLITUDE_STABILITY_M)
-    band: plotting.Style = {"color": "0.88", "linewidth": 0, "zorder": 0}
-    axis.axvspan(at - stable, at + stable, **band, label="letter: stability of the amplitude")
+    if letters:
+        stable = 1e3 * (letter.AMPLITUDE_STABILITY if grazing is None else letter.AMPLITUDE_STABILITY_M)
+        band: plotting.Style = {"color": "0.88", "linewidth": 0, "zorder": 0}
+        axis.axvspan(at - stable, at + stable, **band, label="letter: stability of the amplitude")
     axis.axvline(at, **GUIDE, label="grazing")
     axis.locator_params(axis="x", nbins=4)

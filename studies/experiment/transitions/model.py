@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Annotated
 
 import numpy as np
 
@@ -29,33 +30,23 @@ OTHER_EXCESSES = (2.5e-4, 1e-2)
 
 @dataclass(frozen=True, kw_only=True)
 class Transition:
-    """What one description gives at one drive frequency; None where it could not be computed.
-
-    Parameters
-    ----------
-    letter : the period in the letter.
-    period : the born period; 0: the motion did not settle.
-    excess_down : F/F_g - 1 at which the orbit ends when the amplitude is lowered [1].
-    ends_by : the kind of that end.
-    end_speed : approach velocity of the orbit there [m/s], which identifies it among orbits of this period.
-    bracket : excess at which the downward scan had lost the orbit, and at which it still held it [1].
-    exact : excess of the fold of p_m without simulation [1]: in closed form for map and Eq. (1), from the
-        kicks of the beam's collisions for the two parameters.
-    born : excess -> period that is born there.
-    grazing_amplitude : of the base [m].
-    """
+    """What one description gives at one drive frequency; None where it could not be computed."""
 
     frequency_hz: float
     description: str
-    letter: int | None
-    period: int | None = None
-    excess_down: float | None = None
-    ends_by: str | None = None
-    end_speed: float | None = None
-    bracket: tuple[float, float] | None = None
-    exact: float | None = None
-    born: Mapping[str, int]
-    grazing_amplitude: float
+    letter: Annotated[int | None, "period in the letter"]
+    period: Annotated[int | None, "born period; 0 where the motion did not settle"] = None
+    excess_down: Annotated[float | None, "end of the orbit when the drive is lowered, F/F_g − 1"] = None
+    ends_by: Annotated[str | None, "kind of that end"] = None
+    end_speed: Annotated[float | None, "approach speed of the orbit at its end [m/s]"] = None
+    lost: Annotated[float | None, "F/F_g − 1 at which the downward scan had lost the orbit"] = None
+    held: Annotated[float | None, "F/F_g − 1 at which the downward scan still held the orbit"] = None
+    exact: Annotated[
+        float | None,
+        "fold without simulation, F/F_g − 1; in closed form, for the two parameters from the beam's kicks",
+    ] = None
+    born: Annotated[Mapping[str, int], "born period at excess"]
+    grazing_amplitude: Annotated[float, "drive amplitude of grazing [m]"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -75,8 +66,8 @@ def lowered(row: Transition, strobed: Strobed, excess: float, cycles: int) -> tu
     row = replace(row, period=orbit.period, born=periods)
     if end is not None:
         speed = None if end.orbit is None else abs(end.orbit.speed)
-        bracket = end.lost, end.held
-        row = replace(row, excess_down=end.excess, ends_by=end.kind, end_speed=speed, bracket=bracket)
+        row = replace(row, excess_down=end.excess, ends_by=end.kind, end_speed=speed)
+        row = replace(row, lost=end.lost, held=end.held)
     return row, orbit.end
 
 

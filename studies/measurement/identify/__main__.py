@@ -195,7 +195,7 @@ def identify(
     fit_scene = as_scene(scene, found[first])  # before the report: it refuses values that no scene has
     results = report(run, found)
     about = [f"# {row.parameter} {row.value}" for row in results["rows"] if row.record == first]
-    run.text("fitted.toml", "\n".join([*about, "", fit_scene.dump()]))
+    run.text("fitted.toml", "\n".join([*about, "", fit_scene.dump()]), "The scene with the fitted values.")
     if wanted:
         known = scene if record is None else fit_scene
         if record is not None and description == "two_parameters":
@@ -210,7 +210,8 @@ def examples(scene: Scene, run: Run, delay: float | None) -> dict[str, tuple[Rec
     for kind, description in EXAMPLES.items():
         oscillator = described(scene, description, delay, corresponding(scene, FREQUENCY_HZ))
         found[kind] = synthetic(kind, oscillator, tuple(periods_of(scene).items()), seed=SEED), oscillator
-        run.text(f"{kind}.csv", found[kind][0].text())
+        holds = f"A synthetic record ({kind}) of {description}; each column has its unit in its name."
+        run.text(f"{kind}.csv", found[kind][0].text(), holds.replace("_", " "))
     return found
 
 

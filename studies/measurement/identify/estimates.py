@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import combinations
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from studies.measurement.identify.displacement import UNITS
 from studies.measurement.identify.profiles import Profile, rows_of
 from studies.measurement.identify.result import Fit
 from studies.physics.parameters import parameters_of
+from studies.shell.columns import minus, written
 from studies.shell.run import Run
 
 TRADE, NOTABLE, MOST, UNLIKE = 0.95, 0.5, 10, 2.0
@@ -36,21 +37,21 @@ def prefixed(size: float, unit: str) -> tuple[float, str]:
 class Estimate:
     """One parameter of a fit, in SI units.
 
-    The 90 % interval is that of the profile likelihood where there is one.  ``scene`` is the value of the
-    scene; ``correlations`` are with each parameter in turn.  The properties are for a person: they round to
-    the second digit of the error, in a unit with a prefix.
+    The properties are for a person: they round to the second digit of the error, in a unit with a prefix.
     """
 
     record: str
     parameter: str
-    unit: str
-    start: float
-    estimate: float
-    standard_error: float
-    low90: float
-    high90: float
-    scene: float
-    correlations: tuple[float, ...]
+    unit: Annotated[str, "SI unit of the parameter"]
+    start: Annotated[float, "where the fit began, in the SI unit"]
+    estimate: Annotated[float, "estimate, in the SI unit"]
+    standard_error: Annotated[float, "standard error, in the SI unit"]
+    low90: Annotated[
+        float, "lower end of the 90 % interval, in the SI unit; by the likelihood if that is known"
+    ]
+    high90: Annotated[float, "upper end of the 90 % interval, in the SI unit"]
+    scene: Annotated[float, "value of the scene, in the SI unit"]
+    correlation: Annotated[Mapping[str, float], "correlation with another"]
 
     @property
     def value(self) -> str:
@@ -73,7 +74,7 @@ class Estimate:
 
     def _written(self, number: float) -> str:
         scale, digits, _ = self._style
-        return f"{round(number / scale, digits):z.{max(digits, 0)}f}"
+        return minus(f"{round(number / scale, digits):z.{max(digits, 0)}f}")
 
 
 @dataclass(frozen=True)
@@ -82,23 +83,19 @@ class Correlation:
 
     record: str
     parameter: str
-    other: str
+    other: Annotated[str, "other parameter"]
     correlation: float
 
 
 @dataclass(frozen=True)
 class Quality:
-    """The residuals of a fit.
-
-    ``noise`` is that of x [m], or of an excess [1]; ``chance`` is the probability of such residuals from
-    noise alone.
-    """
+    """The residuals of a fit."""
 
     record: str
-    rows: int
-    noise: float
-    freedom: int
-    chance: float
+    rows: Annotated[int, "number of rows"]
+    noise: Annotated[float, "noise of the readings; in m, or of an excess"]
+    freedom: Annotated[int, "degrees of freedom"]
+    chance: Annotated[float, "probability of such residuals from noise alone"]
 
 
 def units_of(found: Fit) -> list[str]:
@@ -119,7 +116,7 @@ def without_errors(found: Fit) -> str:
 def estimates_of(name: str, found: Fit) -> list[Estimate]:
     """The rows of a fit."""
     columns = found.start, found.estimate, found.errors, *found.intervals().T, found.before
-    correlations = map(tuple, found.correlations.tolist())
+    correlations = [dict(zip(found.names, row, strict=True)) for row in found.correlations.tolist()]
     rows = zip(
         found.names, units_of(found), *(column.tolist() for column in columns), correlations, strict=True
     )
@@ -180,8 +177,18 @@ def report(run: Run, found: Mapping[str, Fit]) -> dict[str, Any]:
     run.table("quality", quality, "The residuals of the fits.", of=Quality)
     points = [row for rows in profiles.values() for row in rows]
     run.table("profile", points, "Likelihood where two parameters trade off.", of=Profile, show=())
-    run.arrays("residuals", **{f"residuals_{name}": one.residuals for name, one in found.items()})
+    residuals = {f"residuals_{name}": one.residuals for name, one in found.items()}
+    holds = "Reading less fit of each row of a record, in the units of its columns: m, m/s, or an excess."
+    run.arrays("residuals", holds, **residuals)
     run.figure("identify", figure.draw(found, profiles), figure.CAPTION)
     for name, note in [(name, note) for name, one in found.items() for note in notes_of(one)]:
         run.say(f"{name}: {note}")
+    best = min(
+        (one for one in estimates if one.estimate), key=lambda one: abs(one.standard_error / one.estimate)
+    )
+    name, part = (
+        best.parameter.replace("_", " "),
+        written(100.0 * abs(best.standard_error / best.estimate), 1),
+    )
+    run.finding(f"Of all fitted parameters the {name} is known best: to {part} % of its value.")
     return {"rows": estimates, "quality": quality}

@@ -13,10 +13,11 @@ from studies.measurement.identify.profiles import Profile
 from studies.measurement.identify.result import Fit
 from studies.physics.parameters import parameters_of
 from studies.shell import plotting
+from studies.shell.columns import minus
 
 CAPTION = (
     "Each record with its fit (left), residuals (middle), and the profile likelihood of the two parameters "
-    "that trade off most (dashed: the 90 % interval), or the correlations of all (right)."
+    "that trade off most, or the correlations of all (right)."
 )
 SHOWN, DEPTH, DARK, SMALL = 6, 2.71, 0.6, 5.5
 """Drive periods of a displacement that are shown; rise of chi^2 at the ends of a 90 % interval; correlation
@@ -34,7 +35,7 @@ def draw(found: Mapping[str, Fit], profiles: Mapping[str, Sequence[Profile]]) ->
     for i, ((name, one), row) in enumerate(zip(found.items(), axes, strict=True)):
         _record(row[0], row[1], one)
         _trade(row[2], one, profiles[name])
-        shown = "profile" if profiles[name] else "correlations"
+        shown = "trade-off of two parameters" if profiles[name] else "correlations of the estimates"
         for k, words in enumerate((f"{name}: record and fit", "residuals", shown)):
             plotting.panel(row[k], 3 * i + k, words)
     return figure
@@ -64,22 +65,24 @@ def _record(left: Any, middle: Any, one: Fit) -> None:
     for axis in (left, middle):
         plotting.label(axis.xaxis, *across)
     plotting.label(left.yaxis, words, "%" if table else "mm")
-    plotting.label(middle.yaxis, "observed less fitted", "%" if table else "\u00b5m")
+    plotting.label(middle.yaxis, "record − fit", "%" if table else "\u00b5m")
     left.margins(y=0.25)
-    left.legend(loc="upper right", ncols=2)
+    marks, names = left.get_legend_handles_labels()
+    (fit, record) = sorted(zip(names, marks, strict=True), key=lambda pair: pair[0])
+    left.legend([record[1], fit[1]], ["record", "fit"], loc="upper right", ncols=2)
 
 
 def _trade(axis: Any, one: Fit, rows: Sequence[Profile]) -> None:
     """The profile of the most correlated pair, else all correlations."""
     if not rows:
-        axis.imshow(one.correlations, vmin=-1.0, vmax=1.0, cmap="RdBu")
+        image = axis.imshow(one.correlations, vmin=-1.0, vmax=1.0, cmap="RdBu")
+        axis.figure.colorbar(image, ax=axis, label="correlation", ticks=[-1.0, 0.0, 1.0])
         names = [name.replace("_", "\n") for name in one.names]
         axis.set_xticks(range(len(names)), names, rotation=90)
         axis.set_yticks(range(len(names)), names)
         for (i, j), number in np.ndenumerate(one.correlations):
             colour = "white" if abs(number) > DARK else "black"
-            words = f"{number:.2f}".replace("-", "\u2212")
-            axis.text(j, i, words, ha="center", va="center", color=colour, fontsize=SMALL)
+            axis.text(j, i, minus(f"{number:.2f}"), ha="center", va="center", color=colour, fontsize=SMALL)
         return
     own = [row for row in rows if row.parameter == rows[0].parameter]
     other, known = axis.twinx(), parameters_of(one.oscillator)
@@ -91,15 +94,17 @@ def _trade(axis: Any, one: Fit, rows: Sequence[Profile]) -> None:
         return scale * np.array(values)
 
     value = shown(axis.xaxis, own[0].parameter, [row.value for row in own])
-    lines = axis.plot(value, [row.depth for row in own], **plotting.series(1), label="$\\chi^2$")
-    axis.axhline(DEPTH, **plotting.GUIDE)
+    lines = axis.plot(value, [row.depth for row in own], **plotting.series(1), label="rise of $\\chi^2$")
+    level = axis.axhline(DEPTH, **plotting.GUIDE, label="90 % interval")
     axis.locator_params(axis="x", nbins=5)
     axis.margins(y=0.25)
     plotting.label(axis.yaxis, "rise of $\\chi^2$")
     fitted = shown(other.yaxis, own[0].other, [row.other_value for row in own])
-    lines += other.plot(value, fitted, **plotting.series(2), label=own[0].other.replace("_", " "))
+    lines += other.plot(
+        value, fitted, **plotting.series(2), label=f"{own[0].other.replace('_', ' ')}, fitted again"
+    )
     for side, line in zip((axis, other), lines, strict=True):
         side.tick_params(axis="y", colors=line.get_color())
         side.yaxis.label.set_color(line.get_color())
     other.spines["right"].set_visible(True)
-    axis.legend(handles=lines, loc="upper center")
+    axis.legend(handles=[*lines, level], loc="upper center")

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,17 +41,13 @@ BENT = 0.2
 
 @dataclass(frozen=True, kw_only=True)
 class Profile:
-    """One point of a profile likelihood: `parameter` held at `value`, all others fitted again.
+    """One point of a profile likelihood: a parameter is held, all others are fitted again."""
 
-    `other` is the parameter that trades off with it, `other_value` what it becomes; `depth` is the rise of
-    chi^2 in units of the noise's variance.
-    """
-
-    parameter: str
-    value: float
-    other: str
-    other_value: float
-    depth: float
+    parameter: Annotated[str, "parameter that is held"]
+    value: Annotated[float, "its value, in its SI unit"]
+    other: Annotated[str, "parameter that trades off with it"]
+    other_value: Annotated[float, "fitted value of that one, in its SI unit"]
+    depth: Annotated[float, "rise of χ²"]
 
 
 @dataclass(frozen=True, eq=False)

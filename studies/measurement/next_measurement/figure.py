@@ -4,10 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import partial
+from typing import Any
 
+import matplotlib
 import numpy as np
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
 from studies import letter
@@ -17,8 +21,8 @@ from studies.measurement.next_measurement.model import (
     Measurement,
     Of,
     Plan,
-    answer,
     best,
+    findings,
     letter_rows,
     measurements_at,
 )
@@ -28,19 +32,27 @@ from studies.shell.run import Run
 BEST = ("frequency_hz", "excess", "period", "errors", "together")
 """Columns of the best places on the terminal."""
 
-PLANE = (
-    "Standard errors over frequency and excess by the best orbit at each place; stars: the letter at an "
-    "excess of 1e-3; numbers: the best five places; grey: the orbit does not outlive its errors."
-)
+PLANE = "Standard errors over frequency and excess by the best orbit at each place."
 
 ERRORS = {
-    "free_period": ("error of $T$ (ms)", 1e3),
-    "decay_rate": ("error of $\\mu$ (1/s)", 1.0),
-    "gap": ("error of the gap (mm)", 1e3),
-    "restitution": ("error of $\\tau$", 1.0),
-    "delay": ("error of the delay (\u00b5s)", 1e6),
+    "free_period": ("free period", "standard error (ms)", 1e3),
+    "decay_rate": ("decay rate", "standard error (1/s)", 1.0),
+    "gap": ("gap", "standard error (mm)", 1e3),
+    "restitution": ("restitution", "standard error", 1.0),
+    "delay": ("time delay", "standard error (µs)", 1e6),
 }
-"""Parameter -> label and scale of its error."""
+"""Parameter -> name, label and scale of its error."""
+
+
+GREY = matplotlib.colormaps["Greys"](0.25)
+RING: plotting.Style = {
+    "marker": "o",
+    "markersize": 6,
+    "mfc": "white",
+    "mec": "black",
+    "mew": 0.5,
+    "ls": "none",
+}
 
 
 def tabulated(
@@ -50,16 +62,16 @@ def tabulated(
     columns = run.map(partial(measurements_at, of, plan, excesses), frequencies, "frequencies")
     found = [one for column in columns for one in column]
     chosen = best(found)
-    caption = f"Standard errors of {', '.join(plan.names)} by one orbit."
+    caption = f"Standard errors of {', '.join(plan.names)} by one orbit.".replace("_", " ")
     run.table("measurements", found, caption, of=Measurement, show=())
     run.table("next", chosen, f"The five best places. {caption}", of=Measurement, show=BEST)
     if found:
-        run.figure("next", draw_plane(found, plan), PLANE)
-    if run.letters:
-        letters = letter_rows(of, plan)
+        run.figure("next", draw_plane(found, plan, run.letters), PLANE)
+    letters = letter_rows(of, plan) if run.letters else []
+    if letters:
         run.table("letter_orbits", letters, "The same by the letter's orbits.", of=LetterOrbits)
-        if plan.names == Plan().names:
-            run.answer("period", answer(found, letters, plan))
+    for sentence in findings(found, letters if plan.names == Plan().names else []):
+        run.finding(sentence)
     return chosen
 
 
@@ -70,36 +82,42 @@ def edges(centres: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 @plotting.in_house_style
-def draw_plane(found: Sequence[Measurement], plan: Plan) -> Figure:
+def draw_plane(found: Sequence[Measurement], plan: Plan, letters: bool) -> Figure:
     """The error of each wanted parameter over frequency and excess."""
     places = [(round(one.frequency_hz, 6), round(one.excess, 9)) for one in found]
     across, up = (sorted({place[i] for place in places}) for i in (0, 1))
     figure, axes = plotting.new_figure(
-        1, len(plan.names), width=plotting.PAGE, height=0.082, sharey=True, squeeze=False
+        1, len(plan.names), width=plotting.PAGE, height=0.092, sharey=True, squeeze=False
     )
     cells = edges(np.array(across)), STABLE * np.sinh(edges(np.arcsinh(np.array(up) / STABLE)))
     shown = dict(sorted(zip(places, found, strict=True), key=lambda pair: (pair[1].kept, -pair[1].together)))
+    marks = dict[str, Any]()
     for k, (axis, name) in enumerate(zip(axes.flat, plan.names, strict=True)):
-        words, scale = ERRORS.get(name, (f"error of {name} (SI units)", 1.0))
+        title, words, scale = ERRORS.get(name, (name.replace("_", " "), "standard error (SI units)", 1.0))
         seen, lost = np.full((2, len(up), len(across)), np.nan)
         for (f, excess), one in shown.items():
-            (seen if one.kept else lost)[up.index(excess), across.index(f)] = one.errors[k] * scale
-        axis.pcolormesh(*cells, 0.0 * lost, cmap="Greys", vmin=-1.0, vmax=3.0)
+            error = list(one.errors.values())[k] * scale
+            (seen if one.kept else lost)[up.index(excess), across.index(f)] = error
+        if np.isfinite(lost).any():
+            axis.pcolormesh(*cells, 0.0 * lost, cmap="Greys", vmin=-1.0, vmax=3.0)
+            marks["orbit that does not outlive its errors"] = Patch(color=GREY)
         if np.isfinite(seen).any():
             mesh = axis.pcolormesh(*cells, seen, cmap="viridis_r", norm=LogNorm())
-            bar = figure.colorbar(mesh, ax=axis, location="top", label=words)
+            bar = figure.colorbar(mesh, ax=axis, location="bottom", label=words)
             bar.ax.xaxis.set_minor_formatter("")
-        axis.plot(list(letter.PERIODS), [1e-3] * 6, **plotting.LETTER_POINTS)
-        for number, one in enumerate(best(found), 1):
-            axis.annotate(
-                str(number),
-                (one.frequency_hz, one.excess),
-                ha="center",
-                va="center",
-                fontsize=plotting.NOTE,
-                bbox={"boxstyle": "circle,pad=0.15", "fc": "white", "lw": 0.5},
+        if letters:
+            (marks["letter, at an excess of 0.001"],) = axis.plot(
+                list(letter.PERIODS), [1e-3] * len(letter.PERIODS), **plotting.LETTER_POINTS
             )
+        for number, one in enumerate(best(found), 1):
+            circle = {"boxstyle": "circle,pad=0.15", "fc": "white", "lw": 0.5}
+            place = {"ha": "center", "va": "center", "fontsize": plotting.NOTE, "bbox": circle}
+            axis.annotate(str(number), (one.frequency_hz, one.excess), **place)
+            marks["the best places, 1 the best"] = Line2D([], [], **RING)
         axis.set_yscale("symlog", linthresh=STABLE)
+        plotting.panel(axis, k, title)
         plotting.label(axis.xaxis, "drive frequency", "Hz")
+    marks["white: no orbit"] = Patch(facecolor="white", edgecolor="0.5", linewidth=0.5)
     plotting.label(axes[0, 0].yaxis, plotting.EXCESS)
+    figure.legend(marks.values(), marks.keys(), loc="outside lower center", ncols=2)
     return figure

@@ -23,9 +23,10 @@ excess. An error beyond the value itself only says that the parameter is not det
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import combinations
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,6 +36,7 @@ from contact import ContactError, ImpactOscillator, NewtonRestitution, NordmarkM
 from contact.orbits import KickFamily, PeriodicOrbit, Shooting, excess_derivatives, orbit_derivatives
 from studies import letter
 from studies.physics.parameters import changes_of, parameters_of
+from studies.shell.columns import UNITS
 
 Array = NDArray[np.float64]
 Of = Callable[[float], ImpactOscillator]
@@ -83,21 +85,25 @@ class Plan:
 
 @dataclass(frozen=True, kw_only=True)
 class Measurement:
-    """Standard errors by an orbit p_m, in the order of the plan's names.
-
-    ``errors`` hold with all else unknown, ``alone`` with all else known; ``together`` is the D-criterion [1].
-    ``distance`` is the excess from the fold, with its standard error; ``kept``: the orbit outlives it.
-    """
+    """Standard errors of the wanted parameters by an orbit p_m."""
 
     frequency_hz: float
     excess: float
     period: int
-    errors: tuple[float, ...]
-    alone: tuple[float, ...]
-    together: float
-    distance: float
-    distance_error: float
-    kept: bool
+    errors: Annotated[Mapping[str, float], "standard error with all else unknown"]
+    alone: Annotated[Mapping[str, float], "standard error with all else known"]
+    together: Annotated[float, "D-criterion; error of all together over their values"]
+    distance: Annotated[float, "excess F/F_g − 1 from the fold"]
+    distance_error: Annotated[float, "standard error of that distance"]
+    kept: Annotated[bool, "whether the orbit outlives its errors"]
+
+
+def by_name(orbit: PeriodicOrbit, plan: Plan, numbers: Iterable[float]) -> dict[str, float]:
+    """Numbers of the wanted parameters by their names with units."""
+    known = parameters_of(orbit.oscillator)
+    units = [UNITS.get(known[name].unit) for name in plan.names]
+    names = [f"{name}_{unit}" if unit else name for name, unit in zip(plan.names, units, strict=True)]
+    return dict(zip(names, numbers, strict=True))
 
 
 def sizes_of(orbit: PeriodicOrbit, plan: Plan) -> Array:
@@ -174,8 +180,8 @@ def measurement(orbit: PeriodicOrbit, nodes: Nodes, plan: Plan) -> Measurement:
         frequency_hz=orbit.oscillator.driven.frequency,
         excess=orbit.excess,
         period=orbit.period,
-        errors=tuple((np.sqrt(np.diag(cov)[:n]) * sizes[:n]).tolist()),
-        alone=tuple((sizes / np.linalg.norm(rows, axis=0))[:n].tolist()),
+        errors=by_name(orbit, plan, (np.sqrt(np.diag(cov)[:n]) * sizes[:n]).tolist()),
+        alone=by_name(orbit, plan, (sizes / np.linalg.norm(rows, axis=0))[:n].tolist()),
         together=float(np.linalg.det(cov[:n, :n]) ** (0.5 / n)) if seen else math.inf,
         distance=orbit.excess - nodes.excesses[0],
         distance_error=off,
@@ -211,14 +217,12 @@ def letters_orbits(of: Of, excess: float = 1e-3) -> list[PeriodicOrbit]:
 
 @dataclass(frozen=True, kw_only=True)
 class LetterOrbits:
-    """Standard errors of the wanted parameters by one of the letter's orbits at an excess of 1e-3, or by two.
-
-    ``speeds`` are the approach velocities at the stop [m/s].
-    """
+    """Standard errors of the wanted parameters by one or two of the letter's orbits, at excess 0.001."""
 
     orbits: str
-    speeds: tuple[float, ...]
-    errors: tuple[float, ...]
+    speed: Annotated[float, "approach velocity at the stop [m/s]"]
+    other_speed: Annotated[float | None, "approach velocity of the second orbit [m/s]"]
+    errors: Annotated[Mapping[str, float], "standard error with all else unknown"]
 
 
 def letter_rows(of: Of, plan: Plan) -> list[LetterOrbits]:
@@ -228,31 +232,31 @@ def letter_rows(of: Of, plan: Plan) -> list[LetterOrbits]:
     return [
         LetterOrbits(
             orbits=" and ".join(f"p{orbit.period}" for orbit in orbits),
-            speeds=tuple(orbit.speed for orbit in orbits),
-            errors=tuple(errors_of(orbits, plan)),
+            speed=orbits[0].speed,
+            other_speed=orbits[1].speed if len(orbits) > 1 else None,
+            errors=by_name(orbits[0], plan, errors_of(orbits, plan)),
         )
         for orbits in [*((orbit,) for orbit in six), *alike]
     ]
 
 
-def answer(found: Sequence[Measurement], letters: Sequence[LetterOrbits], plan: Plan) -> str:
-    """The information in the letter's orbits and at the best place; the plan wants T, tau and the delay."""
-    single = [row for row in letters if len(row.speeds) == 1]
-    two = [row for row in letters if len(row.speeds) == 2]
-    text = ""
+def findings(found: Sequence[Measurement], letters: Sequence[LetterOrbits]) -> list[str]:
+    """The information in the letter's orbits, where they are there, and at the best place: two sentences."""
+    single = [row.errors["free_period_s"] for row in letters if row.other_speed is None]
+    two = [row for row in letters if row.other_speed is not None]
+    said, chosen = list[str](), best(found, 1)
+    if not chosen:
+        said.append("With this noise no orbit exists at one standard error from its excess.")
     if single:
-        text += (
-            f"From {plan.strobes} strobes of one orbit the free period follows to "
-            f"{1e3 * float(np.median([row.errors[0] for row in single])):.1g} ms (median of the letter's). "
+        error = f"{1e3 * float(np.median(single)):.1g} ms"
+        said.append(
+            f"The strobes of one orbit of the letter, once recorded, determine the free period to {error}."
         )
-    text += "No single p_m determines gap, tau and delay together. "
     if two:
-        first = min(two, key=lambda row: row.errors[1])
-        text += f"{first.orbits} together determine tau to {first.errors[1]:.1g}. "
-    if not (chosen := best(found, 1)):
-        return f"{text}With this noise no orbit exists at one standard error from its excess."
-    place = chosen[0]
-    return (
-        f"{text}If the gap is known from the amplitude at grazing, the best place is p{place.period} at "
-        f"{place.frequency_hz:.2f} Hz."
-    )
+        first = min(two, key=lambda row: row.errors["restitution"])
+        error = f"{first.errors['restitution']:.1g}"
+        said.append(f"{first.orbits} together determine the restitution to {error}; no single orbit does.")
+    if chosen:
+        place = f"p{chosen[0].period} at {chosen[0].frequency_hz:.2f} Hz"
+        said.append(f"If the amplitude at grazing tells the gap, {place} is the best next measurement.")
+    return said[:2]

@@ -33,6 +33,7 @@ from studies.measurement.noise.model import End, Observed, ends_of, observed_of
 from studies.measurement.noise.places import Place
 from studies.measurement.noise.scans import FEWEST, Protocol, cell
 from studies.physics.drive_noise import DRIFTS, SMALL, TIMES
+from studies.shell.columns import written
 from studies.shell.files import fingerprint
 from studies.shell.options import MOST_CELLS, Within
 from studies.shell.scene import Scene, band_of, corresponding, harmonic, single_mode_at
@@ -41,6 +42,8 @@ from studies.shell.sweep import sweep
 
 LOWEST_HZ, HIGHEST_HZ, BANDS = 19.6, 23.8, range(3, 11)
 """Of Fig. 3."""
+
+KINDS = "White noise of the drive amplitude", "Slow drift of the drive amplitude"
 
 SPACING = (0.1, 4), (0.5, 2)
 """Hz between places in a band, and places at least: the full form, the small one."""
@@ -78,12 +81,10 @@ def noise(
     ends = [row for rows in run.attempt(ends_of, made, "ends of orbits") for row in rows or ()]
     observed = [row for one in made if (row := observed_of(one)) is not None]
     off = [row.off**2 for row in ends if row.off is not None]
-    rms = (
-        f"formulas are {np.sqrt(np.mean(off or np.nan)):.2f} standard errors off (rms of {len(off)} medians)"
-    )
+    rms = f"formulas are {np.sqrt(np.mean(off or np.nan)):.2f} standard errors off (root mean square)"
     at_letter = [row for row in ends if (row.frequency_hz, row.m) in letters]
     shown = [row for row in observed if (row.frequency_hz, row.m) in letters]
-    run.table("escape", ends, "Excess at which p_m and p_1 end, simulated and by formula.", of=End, show=())
+    run.table("escape", ends, "Excess at which p_m and p1 end, simulated and by formula.", of=End, show=())
     run.table("escape_at_letter", at_letter, f"The same at the frequencies of the scene; {rms}.", of=End)
     run.table("observed", observed, "Hysteresis as an observer would measure it.", of=Observed, show=())
     run.table("observed_at_letter", shown, "The same at the frequencies of the scene.", of=Observed)
@@ -91,9 +92,8 @@ def noise(
     from studies.measurement.noise import figure  # matplotlib is slow to import
 
     if observed:
-        run.figure("observed", figure.draw_observed(scene, observed), figure.OBSERVED)
-    hidden = answer_hysteresis(run, protocols, observed)
-    return {"rows": observed, "ends": ends, "hidden": hidden}
+        run.figure("observed", figure.draw_observed(scene, observed, run.letters), figure.OBSERVED)
+    return {"rows": observed, "ends": ends, **effect_of_noise(run, protocols, observed)}
 
 
 def letter_periods(scene: Scene) -> list[tuple[float, int]]:
@@ -120,30 +120,39 @@ def along_bands(
     return [Place(scene=scene, m=m, frequency_hz=f) for f, m in sorted(found)]
 
 
-def answer_hysteresis(run: Run, protocols: Sequence[Protocol], observed: Sequence[Observed]) -> list[str]:
+def effect_of_noise(
+    run: Run, protocols: Sequence[Protocol], observed: Sequence[Observed]
+) -> dict[str, object]:
     """The effect of the fastest drift, or of white noise without one, on the hysteresis of Eq. (1).
 
-    Returns the transitions at the frequencies of the scene whose hysteresis it hides.
+    Returns the median change, its part in the difference between observation and map, and the transitions
+    at the frequencies of the scene whose hysteresis noise hides.
     """
     chosen = min(protocols, key=lambda each: each.correlation_s or np.inf)
     rows = [row for row in observed if row.noise == chosen.name]
     met = [row for row in rows if np.isfinite(row.median)]
     whole = [row for row in met if row.map is not None and row.fold > chosen.stability]
     if not whole:
-        return []
+        run.finding(
+            "In this noise of the drive amplitude no hysteresis of Eq. (1) can be compared with the map."
+        )
+        return {"hidden": []}
     shift = np.array([row.median - row.fold for row in whole])
     part = np.abs(shift) / (np.abs(shift) + np.abs([row.fold - (row.map or 0.0) for row in whole]))
     given = run.scene.drive.frequencies_hz
     hidden = [
         f"p{row.m} at {row.frequency_hz:.2f} Hz" for row in met if not row.seen and row.frequency_hz in given
     ]
-    said = [
-        f"Noise of the amplitude ({chosen.name}) changes the observed hysteresis by {np.median(shift):+.1e} "
-        "(median).",
-        f"It makes {np.median(part):.0%} (median) of the difference between the observed hysteresis and that "
-        "of the map; the truncation of the map makes the rest.",
-    ]
+    change, share = float(np.median(shift)), float(np.median(part))
+    way = "lowers" if change < 0.0 else "raises"
+    run.finding(
+        f"{KINDS[chosen.correlation_s > 0.0]} {way} the observed hysteresis by {written(abs(change), 2)}."
+    )
+    run.finding(
+        f"Noise makes {share:.0%} of the difference between the observed hysteresis and that of the map; "
+        "the truncation of the map makes the rest."
+    )
     if hidden:
-        said.append(f"It hides the hysteresis of {', '.join(hidden)}.")
-    run.answer("hysteresis", " ".join(said))
-    return hidden
+        names = " and ".join(dict.fromkeys(each.split()[0] for each in hidden))
+        run.finding(f"Noise of this size hides the hysteresis of {names}.")
+    return {"hidden": hidden, "change": change, "share": share}

@@ -11,24 +11,24 @@ from matplotlib.ticker import NullLocator
 from studies import letter
 from studies.measurement.noise.model import Observed
 from studies.shell import plotting
+from studies.shell.columns import written
 from studies.shell.plotting import BLACK, BLUE, GUIDE, LETTER, PAGE, VERMILION, tint
 from studies.shell.scene import Scene, corresponding
 
 OBSERVED = (
-    "Hysteresis against the drive frequency as an observer would have measured it, median and 5 to 95 % of "
-    "the scans of Eq. (1) (line and area, as far as a scan from above grazing reaches p_m), beside the folds "
-    "of the map and of Eq. (1) without noise; dotted: the letter's frequencies. Linear below the printed "
-    "stability of the amplitude, logarithmic above."
+    "Hysteresis against the drive frequency as an observer would have measured it by scans of Eq. (1), where "
+    "a scan from above grazing reaches p_m, beside the folds of the map and of Eq. (1) without noise."
 )
 
 
 @plotting.in_house_style
-def draw_observed(scene: Scene, rows: Sequence[Observed]) -> Figure:
+def draw_observed(scene: Scene, rows: Sequence[Observed], letters: bool) -> Figure:
     """A panel for each noise."""
     kinds = list(dict.fromkeys(row.noise for row in rows))
     figure, axes = plotting.new_figure(
-        len(kinds), 1, width=PAGE, height=0.02 + 0.047 * len(kinds), sharex=True, sharey=True, squeeze=False
+        len(kinds), 1, width=PAGE, height=0.025 + 0.047 * len(kinds), sharex=True, sharey=True, squeeze=False
     )
+    given = "frequencies of the letter" if letters else "drive frequencies of the scene"
     for number, (axis, kind) in enumerate(zip(axes[:, 0], kinds, strict=True)):
         for m in sorted({row.m for row in rows}):
             own = [row for row in rows if row.m == m and row.noise == kind]
@@ -38,19 +38,20 @@ def draw_observed(scene: Scene, rows: Sequence[Observed]) -> Figure:
             axis.plot(f, maps, "-", color=BLACK, label="fold of the map")
             low, high = [row.low for row in own], [row.high for row in own]
             pale = tint(VERMILION, 0.3)
-            axis.fill_between(f, low, high, color=pale, linewidth=0, label="observed, 5 to 95 %")
-            axis.plot(f, [row.median for row in own], color=VERMILION, marker=".", label="its median")
-        axis.axhline(0.0, **GUIDE)
+            axis.fill_between(f, low, high, color=pale, linewidth=0, label="observed, 5-95 % of the scans")
+            axis.plot(f, [row.median for row in own], color=VERMILION, marker=".", label="observed, median")
+        for height in (-letter.AMPLITUDE_STABILITY, letter.AMPLITUDE_STABILITY):
+            axis.axhline(height, **GUIDE, label="axis: linear between these, logarithmic beyond")
         for frequency in scene.drive.frequencies_hz:
-            axis.axvline(frequency, **LETTER)
+            axis.axvline(frequency, **LETTER, label=given)
         axis.set_yscale("symlog", linthresh=letter.AMPLITUDE_STABILITY, linscale=0.4)
         axis.set_ylim(-1e-3, 0.2)
         ticks = (-5e-4, 0.0, 5e-4, 1e-3, 1e-2, 1e-1)
-        axis.set_yticks(ticks, ["-0.0005", "0", "0.0005", "0.001", "0.01", "0.1"])
+        axis.set_yticks(ticks, [written(tick) for tick in ticks])
         axis.yaxis.set_minor_locator(NullLocator())
-        plotting.panel(axis, number, kind)
+        plotting.panel(axis, number, f"{kind} noise" if kind == "white" else kind)
         plotting.label(axis.yaxis, plotting.HYSTERESIS)
     axes[-1, 0].set_xlim(corresponding(scene, 19.5), corresponding(scene, 23.9))
-    plotting.label(axes[-1, 0].xaxis, "excitation frequency", "Hz")
-    plotting.legend_below(figure, axes[:, 0], 4)
+    plotting.label(axes[-1, 0].xaxis, "drive frequency", "Hz")
+    plotting.legend_below(figure, axes[:, 0], 3)
     return figure

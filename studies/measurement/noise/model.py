@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
@@ -23,46 +24,40 @@ Made = tuple[Place, Protocol, Scans]
 
 @dataclass(frozen=True, kw_only=True)
 class End:
-    """Excess at which an orbit ends in scans: `median` with its standard `error`, 5 % (`low`) and 95 %.
-
-    The `end` is one of `ENDS`.  Slips and touches have a `formula` of the median; `off` is formula less
-    median in standard errors.
-    """
+    """Excess at which an orbit ends in scans. Slips and touches have a formula of the median."""
 
     frequency_hz: float
     m: int
-    noise: str
-    fold: float | None
-    end: str
-    scans: int
-    low: float
-    median: float
-    high: float
-    error: float
-    formula: float | None = None
-    off: float | None = None
+    noise: Annotated[str, "noise of the drive amplitude"]
+    fold: Annotated[float | None, "fold of p_m without noise, F/F_g − 1"]
+    end: Annotated[str, "how the orbit ends"]
+    scans: Annotated[int, "number of scans"]
+    low: Annotated[float, "excess at the end, 5 % of the scans"]
+    median: Annotated[float, "excess at the end, median"]
+    high: Annotated[float, "excess at the end, 95 % of the scans"]
+    error: Annotated[float, "standard error of the median"]
+    formula: Annotated[float | None, "median by formula"] = None
+    off: Annotated[float | None, "formula less median, in standard errors"] = None
 
 
 @dataclass(frozen=True, kw_only=True)
 class Observed:
-    """The observed hysteresis: `median`, 5 and 95 % (`low`, `high`) of pairs of `scans`.
+    """The observed hysteresis; NaN where most scans do not reach p_m, or where noise throws p_m out at once.
 
-    `map` and `fold` are the hysteresis without noise; `met` is the part of the scans from above grazing that
-    reach p_m, and not p_1 before.  NaN where most do not, or where noise throws p_m out at once.  It is
-    `seen` if it exceeds a step in 95 % of the pairs.
+    It is `seen` if it exceeds a step in 95 % of the pairs.
     """
 
     frequency_hz: float
     m: int
-    noise: str
-    map: float | None
-    fold: float
-    scans: int
-    low: float
-    median: float
-    high: float
-    met: float
-    seen: bool
+    noise: Annotated[str, "noise of the drive amplitude"]
+    map: Annotated[float | None, "hysteresis of the map without noise"]
+    fold: Annotated[float, "hysteresis of Eq. (1) without noise"]
+    scans: Annotated[int, "number of pairs of scans"]
+    low: Annotated[float, "observed hysteresis, 5 % of the pairs"]
+    median: Annotated[float, "observed hysteresis, median"]
+    high: Annotated[float, "observed hysteresis, 95 % of the pairs"]
+    met: Annotated[float, "part of the scans from above grazing that reach p_m and not p1 before"]
+    seen: Annotated[bool, "whether the hysteresis is seen"]
 
 
 def ends_of(made: Made) -> list[End]:

@@ -9,46 +9,74 @@ coarseness alone changes there if that is more: errors that happen to cancel get
 reference itself is added.
 
 Run:     python -m studies adequacy [--quick]
-Writes:  least.csv (a row a question: the least model, its error, that of the best one a step smaller in one
-         thing), least.png (both errors over the tolerance)
+Writes:  least.csv (a row a question), least.png (errors over the tolerance)
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
-from studies.methods.adequacy.models import Models
-from studies.methods.adequacy.search import Row, Search
+from studies.methods.adequacy.models import EQ_1, Models
+from studies.methods.adequacy.search import LeastModel, Search
 from studies.physics.least_model import middle_of
+from studies.shell.columns import written
 from studies.shell.scene import Scene, harmonic
 from studies.shell.study import Run, study
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+WIDEST = 2.0
+"""End of the axis of the figure: errors over their tolerances [1]."""
+
 
 @study()
 def adequacy(scene: Scene, run: Run) -> Mapping[str, object]:
     """Compute, store and draw."""
-    models, rows = Models(harmonic(scene)), list[Row]()
+    models, rows = Models(harmonic(scene)), list[LeastModel]()
     for quantity, frequency in run.track(questions(scene, run.quick), "questions"):
         search = Search(models, quantity, frequency)
         row = search.least(search.tolerance)
         rows.append(row)
         if not row.reached:
             left = f" to {row.tolerance:g}: {row.error:.1e} is left" if math.isfinite(row.error) else ""
-            run.say(f"none of the models gives {quantity} at {frequency:g} Hz{left}")
+            run.say(f"none of the models gives the {row.quantity} at {frequency:g} Hz{left}")
     shown = ("quantity", "frequency_hz", "tolerance", "error", "error_one_less", "least")
-    run.table("least", rows, "The least model for each question.", of=Row, show=shown)
+    run.table("least", rows, "The least model for each question.", of=LeastModel, show=shown)
     run.figure(
         "least",
         draw(rows),
-        "Error of the least model for each question over its tolerance, and that "
-        "of the best one a step smaller in one thing.",
+        "Error of the least model for each question over its tolerance, and that of the best model that is a "
+        "step smaller in one thing. Both include the error of the reference.",
     )
+    for sentence in sentences(rows):
+        run.finding(sentence)
     return {"rows": rows}
+
+
+def sentences(rows: Sequence[LeastModel]) -> Iterator[str]:
+    """What the questions on impacts need."""
+    for row in rows:
+        if row.quantity == "restitution" and row.reached:
+            yield f"The restitution of a collision needs {needs([row])}."
+    born = [row for row in rows if row.quantity == "born period"]
+    if beyond := [row for row in born if not row.reached or row.level != EQ_1.level]:
+        most = f"but {written(beyond[0].frequency_hz)} Hz" if len(beyond) == 1 < len(born) else "but some"
+        where = f"at all drive frequencies {most}" if len(beyond) < len(born) else "at no drive frequency"
+        yield f"Eq. (1) gives the period that is born at grazing {where}."
+    elif born:
+        yield "Eq. (1) gives the period that is born at grazing wherever it was tried."
+    folds = [row for row in rows if row.quantity == "fold"]
+    if folds and all(row.reached for row in folds):
+        yield f"The hysteresis of the born orbit needs {needs(folds)}."
+
+
+def needs(rows: Sequence[LeastModel]) -> str:
+    """The largest of the least models, in words."""
+    modes = max(0 if row.level == EQ_1.level else row.modes for row in rows)
+    return f"{modes} mode{'s' * (modes > 1)} of the beam" if modes else "no more than Eq. (1)"
 
 
 def questions(scene: Scene, quick: bool) -> list[tuple[str, float]]:
@@ -61,26 +89,32 @@ def questions(scene: Scene, quick: bool) -> list[tuple[str, float]]:
     return asked if quick else [*asked, ("tip_trace", middle)]
 
 
-def draw(rows: Sequence[Row]) -> Figure:
-    """Errors over the tolerance, a line for each question that has one."""
+def draw(rows: Sequence[LeastModel]) -> Figure:
+    """Errors over the tolerance, a line for each question that has an answer; its model on the right."""
     from studies.shell import plotting
 
-    shown = [row for row in rows if row.tolerance][::-1]
+    shown = [row for row in rows if row.least != "none"][::-1]
     with plotting.house_style():
-        figure, axis = plotting.new_figure(width=plotting.PAGE, height=0.02 + 0.006 * len(shown))
+        figure, axis = plotting.new_figure(width=plotting.PAGE, height=0.022 + 0.0055 * len(shown))
         for place, row in enumerate(shown):
-            axis.plot(row.error / row.tolerance, place, **plotting.points(1), label="the least model")
-            if row.error_one_less is not None and math.isfinite(row.error_one_less):
-                axis.plot(
-                    row.error_one_less / row.tolerance,
-                    place,
-                    **plotting.points(2),
-                    label="the best one a step smaller",
-                )
-        axis.axvline(1.0, **plotting.GUIDE)
-        axis.set_xscale("log")
-        words = [f"{row.quantity.replace('_', ' ')}, {row.frequency_hz:.2f} Hz: {row.least}" for row in shown]
-        axis.set_yticks(range(len(shown)), words)
+            smaller = None if row.error_one_less is None else row.error_one_less + row.parts["reference"]
+            errors = {"the least model": row.error, "the best model a step smaller": smaller}
+            for number, (words, error) in enumerate(errors.items(), start=1):
+                if error is None:
+                    continue
+                over = error / row.tolerance if row.tolerance else math.inf if error else 0.0
+                look = plotting.points(number) | {"clip_on": False, "label": words}
+                if over > WIDEST:
+                    look |= {"marker": ">", "color": "0.4", "label": "beyond the axis"}
+                axis.plot(min(over, WIDEST), place, **look)
+        for place, words in enumerate([*(row.least.removeprefix("beam, ") for row in shown), "least model:"]):
+            beside: dict[str, Any] = {"textcoords": "offset points", "va": "center"}
+            axis.annotate(
+                words, (1.0, place), (9.0, 0.0), axis.get_yaxis_transform(), fontsize=plotting.NOTE, **beside
+            )
+        axis.axvline(1.0, **plotting.GUIDE, label="tolerance")
+        axis.set_xlim(0.0, WIDEST)
+        axis.set_yticks(range(len(shown)), [f"{row.quantity}, {row.frequency_hz:.2f} Hz" for row in shown])
         plotting.label(axis.xaxis, "error / tolerance")
-        plotting.legend_below(figure, [axis], 2)
+        plotting.legend_below(figure, [axis], 4)
     return figure

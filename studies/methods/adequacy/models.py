@@ -1,7 +1,7 @@
 """One choice on the ladder of models, and the oscillator that it stands for.
 
-    single_mode   Eq. (1) of the letter: one mode of measured period and decay rate, Newton's law with tau
-    spring        the finite-element model of the spring, or its measured modes
+    Eq. (1)   Eq. (1) of the letter: one mode of measured period and decay rate, Newton's law with tau
+    beam      the finite-element model of the spring, or its measured modes
 
 Of the spring: elements on a leg (four fifths of that on the bend), number of modes, whether one
 residual mode stands for those left out (``ModalModel.with_residual_mode``), and the contact law.
@@ -11,14 +11,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Annotated
 
 from beam import ModalModel, reduce
 from contact import ImpactOscillator
 from studies.physics.least_model import LADDER, REFERENCE
 from studies.shell.scene import Scene, beam_at, damping_of, model_of, modes_of, single_mode_at
 
-LEVELS = {"single_mode": "Eq. (1)", "spring": "beam"}
-LAWS = ("newton", "linear", "hertz", "hunt_crossley")
+IN_WORDS = {"newton": "Newton", "linear": "linear", "hertz": "Hertz", "hunt_crossley": "Hunt and Crossley"}
+LAWS = tuple(IN_WORDS)
 MODES = (*LADDER, REFERENCE)
 MESHES = (2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96)
 """Elements on a leg."""
@@ -29,30 +30,27 @@ BEND_SHARE = 0.8
 
 @dataclass(frozen=True, kw_only=True)
 class Choice:
-    """A model of the spring and its contact.
+    """A model of the spring and its contact."""
 
-    `modes` does not count the residual one; `mesh` is 0 where nothing is meshed.
-    """
-
-    level: str
-    law: str
-    modes: int = 1
-    mesh: int = 0
-    residual: bool = False
+    level: Annotated[str, "model level"]
+    law: Annotated[str, "contact law"]
+    modes: Annotated[int, "modes; without the residual one"] = 1
+    mesh: Annotated[int, "elements on a leg; 0 without a mesh"] = 0
+    residual: Annotated[bool, "a residual mode for those left out"] = False
 
     @property
     def words(self) -> str:
         """In a few words."""
         if self.level == EQ_1.level:
-            return LEVELS[self.level]
+            return self.level
         mesh = f", {self.mesh} elements a leg" if self.mesh else ""
         more = " and a residual one" if self.residual else ""
         modes = f"{self.modes} mode{'s' if self.modes > 1 else ''}{more}"
-        return f"{LEVELS[self.level]}{mesh}, {modes}, {self.law} contact"
+        return f"{self.level}{mesh}, {modes}, {IN_WORDS[self.law]} contact"
 
     @property
     def cost(self) -> float:
-        """Predicted time of a drive period on an orbit with impacts, and of the mesh in the same unit [us].
+        """Predicted time of a drive period on an orbit with impacts, and of the mesh in the same unit [µs].
 
         Contact and flight cost a fixed part and one proportional to the modes; the eigenvalue problem, some
         milliseconds for each element on a leg and paid once, is shared by as many periods as a diagram takes.
@@ -61,7 +59,7 @@ class Choice:
         return fixed + each * (self.modes + self.residual) + 0.06 * self.mesh
 
 
-EQ_1 = Choice(level="single_mode", law="newton")
+EQ_1 = Choice(level="Eq. (1)", law="newton")
 
 
 class Models:
@@ -73,7 +71,7 @@ class Models:
         modes = min(REFERENCE, len(scene.modal_data.frequencies_hz) or REFERENCE)
         mesh, law = 0 if kind == "modal_data" else MESHES[-1], scene.contact.law
         law = "hertz" if radius > 0 and law != LAWS[-1] else law
-        self.sharp = Choice(level="spring", law=law, modes=modes, mesh=mesh)
+        self.sharp = Choice(level="beam", law=law, modes=modes, mesh=mesh)
 
     def oscillator(self, choice: Choice, frequency: float) -> ImpactOscillator:
         """The impact oscillator of a choice at drive `frequency` [Hz].

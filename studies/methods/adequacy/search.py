@@ -21,6 +21,7 @@ from bisect import bisect
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import partial
+from typing import Annotated
 
 import numpy as np
 
@@ -78,24 +79,20 @@ QUANTITIES: Mapping[str, tuple[Ask, Distance, str, float]] = {
 
 
 @dataclass(frozen=True, kw_only=True)
-class Row(Choice):
-    """The least model for a question, or the reference where none is good enough (`reached` is then false).
+class LeastModel(Choice):
+    """The least model for a question, or the reference where none is good enough."""
 
-    Errors come from ``Search.error``, in `unit`; `error` includes the error of the reference itself.  It is
-    infinite, and `least` is "none", where the reference has no answer.
-    """
-
-    quantity: str
+    quantity: Annotated[str, "quantity"]
     frequency_hz: float
-    unit: str
-    tolerance: float
-    reached: bool
-    error: float
-    error_one_less: float | None
-    """Of the best model one step smaller; None where there is no smaller one."""
-    parts: Mapping[str, float]
-    """What each coarseness changes alone, and `reference`, what its modes and mesh leave."""
-    least: str
+    unit: Annotated[str, "what errors are relative to; 1: absolute"]
+    tolerance: Annotated[float, "tolerance"]
+    reached: Annotated[bool, "whether a model is within the tolerance; if not, the row is of the reference"]
+    error: Annotated[float, "error; with that of the reference; none where the reference has no answer"]
+    error_one_less: Annotated[
+        float | None, "error of the best model a step smaller, without that of the reference"
+    ]
+    parts: Annotated[Mapping[str, float], "part of the error; what this simplification changes alone"]
+    least: Annotated[str, "least model"]
 
 
 class Search:
@@ -138,13 +135,13 @@ class Search:
         """What one thing changes, all others as in the reference (the mesh: with the choice's modes)."""
         sharp, found = self.sharp, dict[str, float]()
         if choice == EQ_1:
-            return {"level": self.off(choice)}
+            return {"one_mode": self.off(choice)}
         if choice.law != sharp.law:
-            found["law"] = self.off(replace(sharp, law=choice.law))
+            found["contact_law"] = self.off(replace(sharp, law=choice.law))
         if choice.modes < sharp.modes:
-            found["modes"] = self.off(replace(sharp, modes=choice.modes, residual=choice.residual))
+            found["fewer_modes"] = self.off(replace(sharp, modes=choice.modes, residual=choice.residual))
         if choice.mesh < sharp.mesh:
-            found["mesh"] = self.between(replace(choice, mesh=sharp.mesh), choice)
+            found["coarser_mesh"] = self.between(replace(choice, mesh=sharp.mesh), choice)
         return found
 
     def error(self, choice: Choice) -> float:
@@ -162,7 +159,7 @@ class Search:
         yield from (replace(choice, modes=modes) for modes in _below(MODES, choice.modes)[-1:])
         yield from (replace(choice, mesh=mesh) for mesh in _below(MESHES, choice.mesh)[-1:])
 
-    def least(self, tolerance: float) -> Row:
+    def least(self, tolerance: float) -> LeastModel:
         """The cheapest model whose error and that of the reference stay within the tolerance."""
         own, laws = self.own_error(), LAWS[: LAWS.index(self.sharp.law) + 1]
 
@@ -177,9 +174,9 @@ class Search:
             choice = min(found, key=lambda one: one.cost)
             found = [one for one in self.smaller(choice) if enough(one)]
         error = self.error(choice) + own
-        return Row(
+        return LeastModel(
             **asdict(choice),
-            quantity=self.quantity,
+            quantity=in_words(self.quantity),
             frequency_hz=self.frequency,
             unit=self.unit,
             tolerance=tolerance,
@@ -199,6 +196,11 @@ class Search:
             if enough(few):
                 yield first([replace(few, mesh=mesh) for mesh in meshes], enough)
             most = few.modes
+
+
+def in_words(quantity: str) -> str:
+    """A question as tables and figures have it."""
+    return quantity.replace("frequency ", "frequency of mode ").replace("_", " ")
 
 
 def _below(steps: Sequence[int], value: int) -> list[int]:

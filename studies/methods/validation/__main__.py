@@ -7,18 +7,17 @@ these numbers within the error of its source, or a third route shows which side 
     two bars                       SDNL111: the contact of two uniform bars, tip to tip
     two beams                      Woiwode and Krack: measured frequencies of both beams
 
-Each source keeps its own numbers (the scene is not used). A row holds what is published, what is found and
-the error of the source: it "agrees" within that error and "differs" beyond it. The note gives the third
-route.
+Each source keeps its own numbers; the scene is not used. A note gives the third route.
 
 Run:     python -m studies validation
-Writes:  sources.csv (agreeing and differing numbers of each source), rows.csv, rows.png and .pdf
+Writes:  sources.csv (agreeing and differing numbers of each source), rows.csv, differences.png
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Annotated, Any
 
 from matplotlib.figure import Figure
 
@@ -28,6 +27,7 @@ from studies.methods.validation.one_mode import aberdeen, coco, ghosh_simpson, s
 from studies.methods.validation.printed import Printed
 from studies.methods.validation.two_beams import two_beams
 from studies.shell import plotting
+from studies.shell.columns import written
 from studies.shell.scene import Scene
 from studies.shell.study import Run, study
 
@@ -48,9 +48,9 @@ FLOOR = 1e-6
 class Tally:
     """How many numbers of a source agree and differ."""
 
-    source: str
-    agrees: int
-    differs: int
+    source: Annotated[str, "source"]
+    agrees: Annotated[int, "numbers that agree"]
+    differs: Annotated[int, "numbers that differ"]
 
 
 @study()
@@ -69,22 +69,41 @@ def validation(scene: Scene, run: Run) -> Mapping[str, object]:
     run.table("sources", sources, "Numbers of each source that agree and differ.", of=Tally)
     run.table("rows", rows, "Published numbers and ours.", of=Printed)
     if rows:
-        run.figure("rows", draw(rows), "Differences from published numbers over the error of their source.")
+        run.figure(
+            "differences", draw(rows), "Differences from published numbers over the error of their source."
+        )
+        differs = sum(each.differs for each in sources)
+        but = f" but {differs}" if differs else ""
+        run.finding(f"All published numbers{but} agree with ours within the error of their source.")
+    if Tally(source="SDND122", agrees=0, differs=1) in sources:
+        run.finding("The source SDND122 smooths its wall; a closed form without that gives our frequency.")
     return {"sources": sources, "rows": rows}
 
 
 @plotting.in_house_style
 def draw(rows: Sequence[Printed]) -> Figure:
-    """Differences over the error of the source, a line for each number."""
-    figure, axis = plotting.new_figure(width=plotting.PAGE, height=0.02 + 0.004 * len(rows))
+    """Differences over the error of the source, a line for each number; the source of most at the left."""
+    figure, axes = plotting.new_figure(1, 2, width=plotting.PAGE, height=0.135)
     names = list(dict.fromkeys(row.source for row in rows))
-    for place, row in enumerate(rows):
-        look = plotting.points(names.index(row.source))
-        axis.plot(max(abs(row.difference) / row.source_error, FLOOR), place, **look, label=row.source)
-    axis.axvline(1.0, **plotting.GUIDE)
-    axis.set_xscale("log")
-    axis.set_yticks(range(len(rows)), [row.quantity for row in rows])
-    axis.invert_yaxis()
-    plotting.label(axis.xaxis, "difference / error of the source")
-    plotting.legend_below(figure, [axis], 3)
+    most = max(names, key=[row.source for row in rows].count)
+    for side, (axis, title) in enumerate(zip(axes, (most, "the other sources"), strict=True)):
+        shown = [row for row in rows if (row.source == most) == (side == 0)]
+        for place, row in enumerate(shown):
+            over, look = abs(row.difference) / row.source_error, plotting.points(names.index(row.source))
+            axis.plot(max(over, FLOOR), place, **look, label=row.source)
+            words = f"differs by {written(row.difference, 2)} {row.unit}" if over else "no difference"
+            if over == 0.0 or row.verdict == "differs":
+                way, side_of = (6.0, "left") if over == 0.0 else (-6.0, "right")
+                beside: Any = {"textcoords": "offset points", "va": "center", "fontsize": plotting.NOTE}
+                beside["bbox"] = {"facecolor": "white", "edgecolor": "none", "pad": 0.5}
+                axis.annotate(
+                    words.removesuffix(" 1"), (max(over, FLOOR), place), (way, 0.0), ha=side_of, **beside
+                )
+        axis.axvline(1.0, **plotting.GUIDE, label="error of the source")
+        axis.set_xscale("log")
+        axis.set_yticks(range(len(shown)), [row.quantity.removesuffix(", their F") for row in shown])
+        axis.invert_yaxis()
+        plotting.panel(axis, side, title)
+        plotting.label(axis.xaxis, "difference / error")
+    plotting.legend_below(figure, axes, 4)
     return figure

@@ -16,6 +16,7 @@ from scipy.special import lambertw
 from beam import ModalModel
 from contact import ImpactOscillator, LinearContact, State, Stop, simulate
 from studies.methods.validation.printed import Printed, compared
+from studies.shell.columns import written
 
 Array = NDArray[np.float64]
 PRINTED = {0.2: -0.1, 0.4: -0.2, 0.6: -0.1, 0.8: 0.0, 1.0: 0.2}
@@ -60,11 +61,12 @@ def two_bars() -> list[Printed]:
     return [
         compared(
             "SDNL111",
-            f"contact end at {time} ms [m]",
+            f"contact end at {time} ms",
             1e-3 * printed,
             float(ours),
             0.05e-3 * abs(printed or 0.2),  # at zero 5 % of the largest
-            f"exact wave {wave:.4e}",
+            f"exact wave {written(wave)} m",
+            "m",
         )
         for (time, printed), ours, wave in zip(PRINTED.items(), found, exact, strict=True)
     ]

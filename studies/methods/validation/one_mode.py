@@ -19,6 +19,7 @@ import contact
 from beam import ModalModel
 from contact import ImpactOscillator, LinearContact, NewtonRestitution, Stop, orbits
 from studies.methods.validation.printed import Printed, compared
+from studies.shell.columns import minus
 
 PUBLISHED = {
     0.788138: (0.3506941722911653, 0.9999974, 0.4280592),
@@ -63,19 +64,27 @@ def ghosh_simpson() -> list[Printed]:
     row, rows = partial(compared, "Ghosh and Simpson"), list[Printed]()
     for w, (published, *multipliers) in PUBLISHED.items():
         orbit = theirs = bifurcation(w)
-        error, digit, there = 1e-10, 1e-5, f"at the fold, w = {w}"
+        error, digit, there = 1e-10, 1e-5, f"fold at ω = {w}"
         if w in SPEEDS:
             beside = p2(w).at_speed(1.001 * orbit.speed, orbit)
             share = 1e-5 * w * w / abs(beside.multipliers[0].real + 1)
             error = share * abs(beside.amplitude - orbit.amplitude)
             theirs = p2(w).at_excess(published / math.hypot(1 - w * w, 0.04 * w) - 1, orbit)
-            digit, there = 1e-7, f"at the doubling, w = {w}, and their F"
-            rows.append(row(f"impact speed {there}", SPEEDS[w], theirs.speed, 1e-10))
-        note = f"theirs has the multiplier {multipliers[0]}"
-        rows.append(row(f"F at w = {w}", published, orbit.amplitude * w * w, error, note))
+            digit, there = 1e-7, f"doubling at ω = {w}, their F"
+            rows.append(row(f"impact speed, {there}", SPEEDS[w], theirs.speed, 1e-10))
+        note = f"theirs has the multiplier {minus(str(multipliers[0]))}"
+        rows.append(
+            row(
+                f"amplitude, {there.removesuffix(', their F')}",
+                published,
+                orbit.amplitude * w * w,
+                error,
+                note,
+            )
+        )
         rows += [
-            row(f"multiplier {there}", one, float(ours.real), digit)
-            for one, ours in zip(multipliers, theirs.multipliers, strict=True)
+            row(f"multiplier {number}, {there}", one, float(ours.real), digit)
+            for number, one, ours in zip((1, 2), multipliers, theirs.multipliers, strict=True)
         ]
     return rows
 
@@ -84,7 +93,9 @@ def coco() -> list[Printed]:
     """Grazing at w = 1."""
     stop = Stop(gap=1.0, law=NewtonRestitution(local_restitution=0.8))
     return [
-        compared("COCO 15.2", "A at grazing, w = 1.0", 0.1, driven(1.0, 0.1, stop).grazing_amplitude(), 1e-15)
+        compared(
+            "COCO 15.2", "amplitude at grazing, ω = 1", 0.1, driven(1.0, 0.1, stop).grazing_amplitude(), 1e-15
+        )
     ]
 
 
@@ -95,11 +106,11 @@ def sdnd122() -> list[Printed]:
     start = contact.State(displacement=np.array([-math.sqrt(2 * e)]), velocity=np.zeros(1))
     f = math.sqrt(10) / np.diff(contact.simulate(free, start, duration=15.0).impacts.start)[0]
     angle = math.acos(-1 / math.sqrt(2 * e)) + math.acos(math.sqrt(10 / (120 * e - 50))) / math.sqrt(6)
-    note = f"the source has a regularised wall; closed form {math.sqrt(10) / (2 * angle):.9f}"
-    return [compared("SDND122", "f at 0.00650108 J [Hz]", 0.646694, float(f), 5e-7, note)]
+    note = f"the source has a regularised wall; closed form {math.sqrt(10) / (2 * angle):.9f} Hz"
+    return [compared("SDND122", "frequency at 0.00650108 J", 0.646694, float(f), 5e-7, note, "Hz")]
 
 
 def aberdeen() -> list[Printed]:
     """Grazing at a = 0.7 (experiments: Ing, Pavlovskaia et al. 2008)."""
     graze = brentq(lambda w: 1.26 * rig(w).grazing_amplitude() - 0.7, 0.7, 0.9, xtol=1e-15)
-    return [compared("Aberdeen rig", "w at grazing, a = 0.7", 0.80193, float(graze), 5e-6)]
+    return [compared("Aberdeen rig", "ω at grazing, a = 0.7", 0.80193, float(graze), 5e-6)]

@@ -3,26 +3,34 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 
 @dataclass(frozen=True)
 class Printed:
-    """One number of a source, what is found here, and whether they agree within the source's error."""
+    """One number of a source, and what is found here."""
 
-    source: str
-    quantity: str
-    published: float
-    ours: float
-    difference: float
-    source_error: float
-    verdict: str
-    note: str = ""
+    source: Annotated[str, "source"]
+    quantity: Annotated[str, "quantity"]
+    unit: Annotated[str, "unit of the numbers; 1: a pure number, or in the source's own units"]
+    published: Annotated[float, "published"]
+    ours: Annotated[float, "found here"]
+    difference: Annotated[float, "found here less published"]
+    source_error: Annotated[float, "error of the source"]
+    verdict: Annotated[str, "verdict; agrees within the error of the source, differs beyond it"]
+    note: Annotated[str, "note"] = ""
 
 
 def compared(
-    source: str, quantity: str, published: float, ours: float, source_error: float, note: str = ""
+    source: str,
+    quantity: str,
+    published: float,
+    ours: float,
+    source_error: float,
+    note: str = "",
+    unit: str = "1",
 ) -> Printed:
-    """A row: "agrees" within the source's error, "differs" beyond it."""
+    """A number in its `unit`, and whether it agrees within the source's error."""
     difference = ours - published
     verdict = "agrees" if abs(difference) <= source_error else "differs"
-    return Printed(source, quantity, published, ours, difference, source_error, verdict, note)
+    return Printed(source, quantity, unit, published, ours, difference, source_error, verdict, note)

@@ -90,11 +90,12 @@ def two_beams() -> list[Printed]:
     return [
         compared(
             "Woiwode and Krack 2024",
-            f"{side}, mode {k} [Hz]",
+            f"{side} beam, mode {k}",
             f,
             float(a),
             MODEL_ERROR * f,
-            f"{b:.5g} with the plates 10 mm further out",
+            f"{b:.5g} Hz with the plates 10 mm further out",
+            "Hz",
         )
         for side, measured, here, out in zip(
             ("left", "right"), (LEFT, RIGHT), both_beams(), both_beams(ROOT + 0.01), strict=True

@@ -1,10 +1,11 @@
 """One page of everything that the studies stored, to read, print and pass on: results/report/index.html.
 
-The template (page.html.j2) has generic sections: the answers to the letter's questions, the letter point
-by point, then each study with its docstring, figures and tables, and last what the results rest on. Nothing
-is said here of any study: titles and accounts are docstrings, figures and captions come from its manifest,
-tables from its csv files, verdicts and answers from its summary. A page made from other results says other
-things.
+On top stand the spring, the form of the studies, a picture, and how many points of the letter agree. Then
+come the studies by chapter: each with its verdicts, its figures, at most three sentences, and folded what is
+long: tables, films, the account of the study, notes. Nothing is said here of any study: titles and accounts
+are docstrings, sentences and verdicts come from its summary, figures, tables and what each column holds from
+its columns.json. A page made from other results says other things, and what is the letter's stands on the
+page of the letter's spring only.
 
 The page is one file that needs no network: pictures and style are inside, and its content policy forbids
 every request. What is missing or broken in the results becomes a sentence on the page.
@@ -16,11 +17,11 @@ import base64
 import csv
 import json
 import re
-from collections import Counter
+import shlex
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
-from itertools import islice
+from itertools import count, islice, pairwise
 from pathlib import Path
 
 from jinja2 import Environment, FileSystemLoader
@@ -28,26 +29,47 @@ from jinja2 import Environment, FileSystemLoader
 from beam import InvalidValue
 from studies import letter
 from studies.shell.files import write_atomically
-from studies.shell.programs import ALL, COMMAND, account_of, studies
+from studies.shell.page import words
+from studies.shell.programs import ALL, CHAPTERS, COMMAND, FOLDER, account_of, chapter, first_line, studies
+from studies.shell.scene.values import KEYS
 
-MOST_ROWS, MOST_COLUMNS = 40, 12
+MOST_ROWS = 40
 """Of a table on the page; a longer one is named and left to its file."""
 
 LARGEST_PICTURE = 4_000_000
 """Bytes of a picture or film that goes into the page; a larger one is linked."""
 
+VERDICTS = {
+    "agrees": "agree",
+    "in part": "agree in part",
+    "differs": "differ",
+    "fitted": "agree because the scene was fitted to them",
+    "open": "are open: the letter prints no number, or the study has not run",
+}
+"""A verdict, and what the points with it do."""
+
+KEPT = ("--scene", "--set", "--out", "--style")
+"""Options that every study takes with a value."""
+
 SET_OUT = re.compile(r"^(    |(Run|Writes):)", re.MULTILINE)
 """In a paragraph whose lines are not to be filled: a formula, a table, a list of commands."""
+
+OF_A_FIGURE = re.compile(r"^(Fig\. \d of the letter): (.)")
+"""At the head of a title."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Shown:
-    """A figure or film, `source` a data URI or a link; or a table, the first of its `rows` the headings."""
+    """A picture, `source` a data URI or a link; or a table with its headings, cut off where it is long."""
 
     name: str
     caption: str
+    number: int = 0
     source: str = ""
+    width: int = 0
+    headings: Sequence[str] = ()
     rows: Sequence[Sequence[str]] = ()
+    long: bool = False
 
 
 @dataclass(kw_only=True)
@@ -57,118 +79,215 @@ class Stored:
     study: str
     summary: Mapping[str, object] = field(default_factory=dict)
     manifest: Mapping[str, object] = field(default_factory=dict)
-    shown: list[Shown] = field(default_factory=list)
-    files: list[str] = field(default_factory=list)
+    columns: Mapping[str, object] = field(default_factory=dict)
+    figures: list[Shown] = field(default_factory=list)
+    films: list[Shown] = field(default_factory=list)
+    tables: list[Shown] = field(default_factory=list)
     faults: list[str] = field(default_factory=list)
+
+    @property
+    def letters(self) -> bool:
+        """Whether its spring is the letter's."""
+        return self.manifest.get("of_the_letter") is True
+
+    @property
+    def files(self) -> list[str]:
+        """The names of its files, in the order in which they were written."""
+        return _list(self.manifest.get("files"))
+
+    @property
+    def title(self) -> str:
+        """The first line of its docstring; that it is a figure of the letter only for the letter's spring."""
+        line = account_of(self.study).partition("\n")[0].rstrip(".")
+        return line if self.letters else OF_A_FIGURE.sub(lambda match: match[2].upper(), line)
 
     @property
     def account(self) -> list[tuple[str, str]]:
         """The docstring of the study, "prose" or "as it is" with each paragraph."""
-        blocks = account_of(self.study).split("\n\n")
+        blocks = [
+            block
+            for block in account_of(self.study).split("\n\n")[1:]
+            if self.letters or "letter" not in block or block.startswith("Run:")
+        ]
         return [("as it is" if SET_OUT.search(block) else "prose", block) for block in blocks]
+
+    @property
+    def notes(self) -> list[str]:
+        """Warnings, failed cells, and what could not be read."""
+        return [*_list(self.summary.get("warnings")), *_list(self.summary.get("failures")), *self.faults]
+
+    @property
+    def findings(self) -> list[str]:
+        """What came out, in sentences."""
+        return _list(self.summary.get("findings"))
+
+    @property
+    def verdicts(self) -> Mapping[str, Mapping[str, object]]:
+        """Point of the letter -> what was found; none for another spring."""
+        found = _object(self.summary.get("verdicts")) if self.letters else {}
+        return {key: _object(found[key]) for key in letter.POINTS if key in found}
 
 
 def _object(value: object) -> Mapping[str, object]:
     return value if isinstance(value, dict) else {}
 
 
-def read_stored(folder: Path) -> Stored:
-    """What lies in the folder of one study."""
+def _list(value: object) -> list[str]:
+    return [str(one) for one in value] if isinstance(value, list) else []
+
+
+def read_stored(folder: Path, numbers: Iterator[int]) -> Stored:
+    """What lies in the folder of one study; each figure takes the next of the `numbers`."""
     stored = Stored(study=folder.name)
-    for name in ("summary", "manifest"):
+    for name in ("summary", "manifest", "columns"):
         try:
             setattr(stored, name, _object(json.loads((folder / f"{name}.json").read_text(encoding="utf-8"))))
         except (OSError, ValueError) as error:
             stored.faults.append(f"{folder.name}/{name}.json cannot be read: {error}")
-    captions = _object(stored.manifest.get("captions"))
-    listed = stored.manifest.get("files")
-    stored.files = [str(name) for name in listed] if isinstance(listed, list) else []
-    for name in sorted(stored.files, key=lambda name: name.endswith(".csv")):
+    for name in stored.files:
+        about, path = _object(stored.columns.get(name)), folder / name
         try:
-            shown = _shown(folder / name, str(captions.get(name) or ""))
-            stored.shown += [shown] if shown else []
+            if path.suffix == ".png":
+                stored.figures.append(_picture(path, about, next(numbers)))
+            elif path.suffix == ".gif":
+                stored.films.append(_picture(path, about, 0))
+            elif path.suffix == ".csv":
+                stored.tables.append(_table(path, about))
         except (OSError, ValueError, csv.Error) as error:
             stored.faults.append(f"{folder.name}/{name} cannot be read: {error}")
     return stored
 
 
-def _shown(path: Path, caption: str) -> Shown | None:
-    """What the page shows of a file: a picture, linked if it is large, or a table that is not too large."""
-    if path.suffix == ".csv":
-        with path.open(newline="", encoding="utf-8") as stream:
-            rows = list(islice(csv.reader(stream), MOST_ROWS + 2))
-        fits = 0 < len(rows) <= MOST_ROWS + 1 and len(rows[0]) <= MOST_COLUMNS
-        return Shown(name=path.name, caption=caption, rows=rows) if fits else None
-    if path.suffix not in (".png", ".gif"):
-        return None
-    source = f"../{path.parent.name}/{path.name}"
-    if path.stat().st_size <= LARGEST_PICTURE:
-        content = base64.b64encode(path.read_bytes()).decode("ascii")
-        source = f"data:image/{path.suffix[1:]};base64,{content}"
-    return Shown(name=path.name, caption=caption, source=source)
+def _picture(path: Path, about: Mapping[str, object], number: int) -> Shown:
+    """A picture, linked if it is large."""
+    content, source = path.read_bytes(), f"../{path.parent.name}/{path.name}"
+    if len(content) <= LARGEST_PICTURE:
+        source = f"data:image/{path.suffix[1:]};base64,{base64.b64encode(content).decode('ascii')}"
+    width = int.from_bytes(content[16:20], "big") if path.suffix == ".png" else 0  # of its header
+    caption = str(about.get("holds") or "")
+    return Shown(name=path.stem, caption=caption, number=number, source=source, width=width)
 
 
-def _shortened(cell: str) -> str:
-    """A number to five digits, anything else as it is."""
-    try:
-        return cell if cell.lstrip("-").isdigit() else f"{float(cell):.5g}"
-    except ValueError:
-        return cell
+def _table(path: Path, about: Mapping[str, object]) -> Shown:
+    """A table without the columns that are empty in every row."""
+    with path.open(newline="", encoding="utf-8") as stream:
+        names, *rows = list(islice(csv.reader(stream), MOST_ROWS + 2)) or [[]]
+    listed = about.get("columns")
+    known = [_object(one) for one in listed] if isinstance(listed, list) else []
+    known = known if len(known) == len(names) else [{"heading": words.cell(name)} for name in names]
+    full = [n for n in range(len(names)) if any(row[n] for row in rows if len(row) == len(names))]
+    headings = [
+        f"{one.get('heading')} ({one['unit']})" if one.get("unit") else str(one["heading"]) for one in known
+    ]
+    return Shown(
+        name=path.stem,
+        caption=str(about.get("holds") or path.name),
+        headings=[headings[n] for n in full],
+        rows=[[row[n] for n in full] for row in rows if len(row) == len(names)],
+        long=len(rows) > MOST_ROWS,
+    )
 
 
 def read_results(results: Path) -> list[Stored]:
-    """The results of all studies that have any, the main one first.
+    """The results of all studies that have any, by chapter.
 
     Raises
     ------
     ValueError
         If there are none.
     """
-    found = [read_stored(results / name) for name in studies() if (results / name / "summary.json").exists()]
-    if not found:
+    numbers = count(1)
+    there = [results / name for name in studies() if (results / name / "summary.json").exists()]
+    if not there:
         raise InvalidValue(f"there are no results in {results}: run {COMMAND} first")
-    return found
+    return [read_stored(folder, numbers) for folder in there]
 
 
-def _points(stored: Mapping[str, Stored]) -> Iterator[dict[str, object]]:
-    """The letter point by point, with what the studies that are there found."""
+@dataclass(frozen=True, kw_only=True)
+class Judged:
+    """A point of the letter, its verdict, and the place on the page that shows it."""
+
+    key: str
+    point: letter.Point
+    verdict: str
+    found: str
+    note: str
+    place: str
+
+
+def judged_points(found: Sequence[Stored]) -> list[Judged]:
+    """The letter point by point; open where no study that is there says more."""
+    by_name = {stored.study: stored for stored in found if stored.letters}
+    points = []
     for key, point in letter.POINTS.items():
-        if point.study in stored:
-            found = _object(_object(stored[point.study].summary.get("verdicts")).get(key))
-            yield {"verdict": "not stored", "found": "", "note": "", **found, "point": point}
+        stored = by_name.get(point.study)
+        about = stored.verdicts.get(key, {}) if stored else {}
+        figures = stored.figures if stored else []
+        named = [figure for figure in figures if figure.name == about.get("figure")] or figures
+        place = f"figure-{named[0].number}" if named else f"study-{point.study}" if stored else f"point-{key}"
+        verdict = str(about.get("verdict"))
+        said = {name: str(about.get(name) or "") for name in ("found", "note")}
+        verdict = verdict if verdict in VERDICTS else "open"
+        points.append(Judged(key=key, point=point, verdict=verdict, place=place, **said))
+    return points
 
 
-def _answers(stored: Mapping[str, Stored]) -> Iterator[tuple[str, list[str]]]:
-    """The questions of the letter that a study has answered, with what the studies say."""
-    for key, (question, answering) in letter.QUESTIONS.items():
-        there = [stored[study].summary.get("answers") for study in answering if study in stored]
-        if said := [str(answers[key]) for answers in map(_object, there) if answers.get(key)]:
-            yield question, said
+def ground(stored: Stored) -> Iterator[tuple[str, str, str]]:
+    """What each key of the scene means, its value and where that comes from."""
+    origins = _object(stored.manifest.get("provenance"))
+    for section, entries in _object(stored.manifest.get("parameters")).items():
+        for name, value in _object(entries).items():
+            key, origin = f"{section}.{name}", str(origins.get(f"{section}.{name}") or "")
+            shown = origin not in ("letter", "assumed") or section in ("spring", "tip", "stop", "contact")
+            if key in KEYS and shown:
+                yield KEYS[key].meaning, words.quantity(value, KEYS[key].unit), origin
 
 
 def write_page(results: Path) -> tuple[Path, list[Stored], list[str]]:
     """Write results/report/index.html; returns its path, what is on it, and which studies are not."""
     found = read_results(results)
-    by_name = {stored.study: stored for stored in found}
-    missing = [name for name in studies() if name not in by_name]
-    points = list(_points(by_name))
+    missing = [name for name in studies() if name not in {stored.study for stored in found}]
+    letters = any(stored.letters for stored in found)
+    points = judged_points(found) if letters else []
     environment = Environment(
         loader=FileSystemLoader(Path(__file__).parent), autoescape=True, trim_blocks=True, lstrip_blocks=True
     )
-    environment.filters["shortened"] = _shortened
+    first = found[0]
+    environment.filters |= {"prose": words.prose, "cell": words.cell}
+    chapters = [
+        (
+            first_line(FOLDER / name / "__init__.py").rstrip("."),
+            [one for one in found if one.study in chapter(name)],
+        )
+        for name in CHAPTERS
+    ]
     text = environment.get_template("page.html.j2").render(
-        stored=found,
+        first=first,
+        letters=letters,
+        chapters=[(title, own) for title, own in chapters if own],
+        picture=next((figure for stored in found for figure in stored.figures), None),
+        small=[stored.study for stored in found if _object(stored.summary.get("settings")).get("quick")],
+        others=[one.study for one in found if one.manifest.get("size") != first.manifest.get("size")],
+        count=len(found),
         missing=missing,
-        command=COMMAND,
+        command=command_for_the_rest(first),
         points=points,
-        unjudged=len(letter.POINTS) - len(points),
-        tally=Counter(str(point["verdict"]) for point in points),
-        answers=list(_answers(by_name)),
+        verdicts=VERDICTS,
+        ground=list(ground(first)),
         made=f"{datetime.now(UTC):%Y-%m-%d %H:%M} UTC",
     )
     folder = results / "report"
     folder.mkdir(parents=True, exist_ok=True)
     return write_atomically(folder / "index.html", text.encode()), found, missing
+
+
+def command_for_the_rest(stored: Stored) -> str:
+    """The command that runs every study on the scene of this one, in the same form, into the same folder."""
+    given, kept = shlex.split(str(stored.manifest.get("command") or "")), list[str]()
+    for word, following in pairwise([*given, ""]):
+        if word == "--quick" or word.partition("=")[0] in KEPT:
+            kept += [word, following] if word in KEPT and following else [word]
+    return f"{ALL} {shlex.join(kept)}".rstrip()
 
 
 def told_page(results: Path) -> str:
@@ -183,5 +302,5 @@ def told_page(results: Path) -> str:
 def in_words(path: Path, found: Sequence[Stored], missing: Sequence[str]) -> str:
     """The page in one sentence, with the command that completes it."""
     count = f"{len(found)} of {len(found) + len(missing)}" if missing else f"all {len(found)}"
-    size = f"page of {count} studies, {path.stat().st_size / 1e6:.1f} MB: {path}"
-    return f"{size}; {ALL} makes the rest" if missing else size
+    page = f"page of {count} studies, {path.stat().st_size / 1e6:.1f} MB: {path}"
+    return f"{page}; {command_for_the_rest(found[0])} makes the rest" if missing else page

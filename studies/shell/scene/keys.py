@@ -33,10 +33,10 @@ class SpringKeys:
     bend_radius_m: float = key(0.009, "m", "radius of the bend of a U, to its middle line", low=0.0)
     width_m: float = key(0.012, "m", "width of the strip, or of one leg of a flat_u")
     thickness_m: float = key(0.0011760560469233, "m", "thickness of the sheet", CALIBRATED, low=1e-9)
-    young_modulus_pa: float = key(105e9, "Pa", "Young's modulus of the sheet (brass)", low=1.0)
-    poisson_ratio: float = key(0.34, "1", "Poisson's ratio of the sheet (brass)")
-    density_kg_m3: float = key(8500.0, "kg/m^3", "density of the sheet (brass)")
-    loss_factor: float = key(1e-3, "1", "loss factor of the sheet (brass)")
+    young_modulus_pa: float = key(105e9, "Pa", "Young's modulus of the sheet", low=1.0)
+    poisson_ratio: float = key(0.34, "1", "Poisson's ratio of the sheet")
+    density_kg_m3: float = key(8500.0, "kg/m^3", "density of the sheet")
+    loss_factor: float = key(1e-3, "1", "loss factor of the sheet")
     tape_thickness_m: float = key(0.00045, "m", "thickness of the damping tape; 0 for none")
     tape_sides: int = key(2, "1", "faces of the strip that carry the tape", low=1, high=2)
     tape_coverage: float = key(
@@ -68,10 +68,10 @@ class TipKeys:
         1.0, "1", "place of the tip on a straight_strip: 0 first end, 1 last end", low=0.0, high=1.0
     )
     ball_radius_m: float = key(0.0025, "m", "radius of the ball")
-    ball_young_modulus_pa: float = key(370e9, "Pa", "Young's modulus of the ball (alumina)")
-    ball_poisson_ratio: float = key(0.22, "1", "Poisson's ratio of the ball (alumina)")
-    plate_young_modulus_pa: float = key(210e9, "Pa", "Young's modulus of the plate (steel)")
-    plate_poisson_ratio: float = key(0.29, "1", "Poisson's ratio of the plate (steel)")
+    ball_young_modulus_pa: float = key(370e9, "Pa", "Young's modulus of the ball")
+    ball_poisson_ratio: float = key(0.22, "1", "Poisson's ratio of the ball")
+    plate_young_modulus_pa: float = key(210e9, "Pa", "Young's modulus of the plate")
+    plate_poisson_ratio: float = key(0.29, "1", "Poisson's ratio of the plate")
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -264,3 +264,29 @@ def with_first_mode(scene: Scene) -> Scene:
             f"mode 1 of the spring does not oscillate: give {names[0]} (unit s) and {names[1]} (unit 1/s)"
         )
     return scene.replace(values, provenance="mode 1")
+
+
+def material_of(scene: Scene) -> str:
+    """Brass or steel, if modulus and density of the sheet are within a tenth of it, else ""."""
+    found = [scene.spring.young_modulus_pa, scene.spring.density_kg_m3]
+    known = {"brass": beam.BRASS, "steel": beam.STEEL}
+    like = [name for name, m in known.items() if np.allclose(found, [m.youngs_modulus, m.density], 0.1, 0.0)]
+    return like[0] if like and scene.spring.kind != "modal_data" else ""
+
+
+def spring_in_words(scene: Scene) -> str:
+    """What the spring is, in a few words: steel cantilever, spring with measured modes."""
+    if scene.spring.kind == "modal_data":
+        return "spring with measured modes"
+    kind = scene.spring.kind.replace("_u", " U-shaped spring").replace("_", " ")
+    return f"{material_of(scene)} {kind}".lstrip()
+
+
+def size_in_words(scene: Scene) -> str:
+    """Length, width and thickness of the strip, ball and gap, in mm and g."""
+    spring, gap = scene.spring, f"a gap of {1e3 * scene.stop.gap_m:.3g} mm"
+    if spring.kind == "modal_data":
+        return gap
+    sizes = (spring.leg_length_m, spring.width_m, spring.thickness_m)
+    ball = f"a ball of {1e3 * scene.tip.mass_kg:.2g} g"
+    return f"{' × '.join(f'{1e3 * size:.3g}' for size in sizes)} mm, {ball}, {gap}"

@@ -1,0 +1,57 @@
+"""What the studies stored, as a page writes it: prose, cells of tables, numbers in units of a person."""
+
+from __future__ import annotations
+
+import re
+
+from markupsafe import Markup, escape
+
+from studies.shell.columns import prefixed, written
+
+NUMBER = r"\d[\d,]*(?:\.\d+)?(?:e[-+]?\d+)?"
+SIGNED = re.compile(rf"(?<![\w.)\]−-])-(?={NUMBER})")
+"""A hyphen that is the sign of a number; one in a word or a range is none."""
+
+LONG = re.compile(r"(?<![\w.])(?:\d+\.\d{5,}(?:e[-+]?\d+)?|\d+(?:\.\d+)?e[-+]?\d+)(?!\w|\.\d)")
+"""A number with many digits, or with an exponent."""
+
+SIGNS = {"+-": "±", "<->": "↔", "->": "→", " x ": " × ", ">=": "≥", "<=": "≤"}
+
+YES_NO = {"True": "yes", "False": "no", "": "–", "inf": "∞"}
+
+
+def plain(text: str) -> str:
+    """Prose with the signs and numbers of print."""
+    for typed, printed in SIGNS.items():
+        text = text.replace(typed, printed)
+    text = re.sub(r"\s+", " ", text).strip()
+    return LONG.sub(lambda match: written(float(match[0])), SIGNED.sub("−", text))
+
+
+def prose(text: str) -> Markup:
+    """A sentence as HTML: what stands between backticks is code."""
+    parts = re.split(r"`+([^`]+)`+", plain(text))
+    pieces = [
+        escape(part) if n % 2 == 0 else Markup("<code>{}</code>").format(part) for n, part in enumerate(parts)
+    ]
+    return Markup("").join(pieces)
+
+
+def cell(text: str) -> str:
+    """A cell of a table: a number to four digits, words without underscores, yes or no, a dash."""
+    if text in YES_NO:
+        return YES_NO[text]
+    try:
+        return written(float(text))
+    except ValueError:
+        return plain(re.sub(r"(?<=\w)_(?=\w)", " ", text))
+
+
+def quantity(value: object, unit: str) -> str:
+    """The value of a key of a scene, in a unit that a person would choose."""
+    if isinstance(value, list):
+        return ", ".join(quantity(one, unit) for one in value) or "none"
+    if not isinstance(value, int | float) or isinstance(value, bool):
+        return cell(str(value))
+    scale, unit = prefixed(abs(value), unit or "1")
+    return f"{written(value / scale)} {unit}".removesuffix(" 1")
