@@ -103,7 +103,7 @@ def finite_amplitude(scene: Scene, run: Run) -> list[Survival]:
     rows = [row for part in found for row in part]
     shown = ("reading", "bend_radius_m", "gap_m", "tip_mass_kg", "kappa", "survive")
     run.table("springs", rows, "Springs by shape, bend radius, gap and ball.", of=Survival, show=shown)
-    run.figure("finite_amplitude", figure.draw_survival(scene, rows), figure.SURVIVAL)
+    run.figure("finite_amplitude", figure.draw_survival(scene, rows, run.letters), figure.SURVIVAL)
     own = (scene.spring.bend_radius_m, scene.stop.gap_m, scene.tip.mass_kg)
     folded = (row for row in rows if row.reading == TITLES["folded"])
     row = next(row for row in folded if (row.bend_radius_m, row.gap_m, row.tip_mass_kg) == own)
