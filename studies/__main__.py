@@ -41,7 +41,8 @@ def run_program(name: str, arguments: Sequence[str]) -> int:
         print(f"{COMMAND}: {programs.unknown(name)}\n{chapters_in_words()}", file=sys.stderr)
         return programs.WRONG_USE
     if name == "tour":
-        sys.argv[1:] = arguments
+        programs.refuse_arguments(name, arguments)
+        sys.argv[1:] = []
         runpy.run_module("studies.tour", run_name="__main__")
         return 0
     module = importlib.import_module(module_of(name))

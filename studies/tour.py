@@ -5,10 +5,6 @@ what it found. Command: python -m studies tour, or cell by cell in an editor tha
 options: copy it and change it. Output: results/tour.png and .pdf, and three records as CSV.
 """
 
-from studies.shell.programs import refuse_arguments
-
-refuse_arguments("tour", __doc__)
-
 # %% A U cut out of a sheet of brass, damping tape on its legs; a ceramic ball with its mount at the bend
 from dataclasses import replace
 
@@ -63,20 +59,24 @@ print(f"p4 ends {-100 * fold.excess:.2f} % below grazing; Floquet multiplier {fo
 # %% The picture: ball and plate over one orbit
 from pathlib import Path
 
-from studies.shell.plotting import PALETTE, house_style, label, new_figure, points, save
+from matplotlib.figure import Figure
 
-figure, axes = new_figure()
-axes.plot(1e3 * (times - settled.time), 1e3 * beam.tip(motion.displacement), color=PALETTE[0], label="ball")
-axes.axhline(1e3 * beam.stop.gap, color=PALETTE[1], linestyle="--", label="plate")
-strobes = beam.tip(motion.strobe_displacement[:4])
-axes.plot(1e3 * (motion.strobe_time[:4] - settled.time), 1e3 * strobes, **points(2), label="strobes")
-label(axes.xaxis, "time", "ms")
-label(axes.yaxis, "displacement", "mm")
-with house_style():
-    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3)
+figure = Figure(figsize=(7.0, 3.8), layout="constrained")
+axes, strobes = figure.subplots(), beam.tip(motion.strobe_displacement[:4])
+touch = hit.first_touch - settled.time
+axes.plot(1e3 * (times - settled.time), 1e3 * beam.tip(motion.displacement), label="ball")
+axes.axhline(1e3 * beam.stop.gap, color="0.5", linestyle="--", label="plate")
+axes.axvline(1e3 * touch, color="tab:red", linestyle=":", label="impact")
+axes.plot(
+    1e3 * (motion.strobe_time[:4] - settled.time), 1e3 * strobes, "ko", label="seen once in each drive period"
+)
+axes.set(xlabel="time (ms)", ylabel="displacement (mm)", title="p4: one impact in four drive periods")
+figure.legend(loc="outside lower center", ncols=4, frameon=False)
 folder = Path("results")
 folder.mkdir(parents=True, exist_ok=True)
-print("drawn in", *save(figure, folder, "tour"))
+for path in (folder / "tour.png", folder / "tour.pdf"):
+    figure.savefig(path, dpi=150)
+    print("drawn in", path)
 
 # %% Records of this rig as an experiment gives them, for `python -m studies identify results/tour_strobe.csv`
 rig = f"# frequency_hz = 21.5\n# amplitude_m = {beam.driven.amplitude!r}\n"

@@ -176,16 +176,16 @@ def told_by(name: str, found: dict) -> Iterator[str]:
         for words, row in zip(ends, found["sources"], strict=True):
             yield cells(words, row["agrees"], row["differs"])
     if name == "shape":
-        (factor,) = re.findall(r"factor of up to ([\d.]+)", found["answers"]["hysteresis"])
+        (factor,) = re.findall(r"factor of up to ([\d.]+)", " ".join(found["findings"]))
         yield f"differ by up to a factor of {factor}"
-        for reading, radius in (("side_by_side", 0.009), ("folded", 0.0075)):
+        for reading, radius in (("legs side by side", 0.009), ("folded", 0.0075)):
             (row,) = (
                 row
                 for row in found["springs"]
                 if row["reading"] == reading and row["bend_radius_m"] == radius
                 if abs(row["gap_m"] - 0.01188) < 1e-4 and abs(row["tip_mass_kg"] - 0.00683) < 1e-4
             )
-            slower = [100.0 * (period / 40.8e-3 - 1.0) for period in row["effective_period_s"]]
+            slower = [100.0 * (period / 40.8e-3 - 1.0) for period in row["effective_period_s"].values()]
             faster = 100.0 * row["kappa"] * (row["gap_m"] / row["length_m"]) ** 2
             span = f"{min(slower):+.2f} to {max(slower):+.2f} %"
             yield cells(f"{row['kappa']:+.3f}", f"{faster:+.3f} %", span, row["survive"])

@@ -173,13 +173,13 @@ def perform(study: str, command: str, arguments: Sequence[str], work: Callable[[
             return WRONG_USE
 
 
-def refuse_arguments(name: str, account: str) -> None:
+def refuse_arguments(name: str, arguments: Sequence[str]) -> None:
     """For a script without options: --help prints its account, any other argument is refused."""
-    if as_program() and (words := sys.argv[1:]):
-        if words[0] in ("-h", "--help"):
-            tell(by_own_name(account), sys.stdout)
-            raise SystemExit(DONE)
-        print(f"{COMMAND} {name}: {words[0]} is refused; it takes no options", file=sys.stderr)
+    if arguments and arguments[0] in ("-h", "--help"):
+        tell(account_of(name), sys.stdout)
+        raise SystemExit(DONE)
+    if arguments:
+        print(f"{COMMAND} {name}: {arguments[0]} is refused; it takes no options", file=sys.stderr)
         raise SystemExit(WRONG_USE)
 
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from beam import BRASS, STEEL
 from contact import StroboscopicMap
 from contact.orbits import born
 from studies.experiment.time_trace.film import drawn_shapes, film_orbit
@@ -41,6 +42,7 @@ def test_the_drawn_ball_meets_the_drawn_plate_when_the_tip_has_moved_by_the_gap(
     assert low[1] - ball[:, 1].max() == pytest.approx(gap, abs=0.02 * radius)
     assert low[0] < ball[:, 0].mean() < high[0]
     assert Scenery.of(modes, ball_radius=radius, swing=gap).plate is None
+    assert scenery.strip == film.metal(BRASS) != film.metal(STEEL)
 
 
 def test_higher_modes_are_enlarged_and_the_tip_stays_where_it_is(scene, modes):

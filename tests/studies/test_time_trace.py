@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import fields
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from PIL import Image
 
-from contact import first_collision
+from contact import Collision, first_collision
 from contact.collision import before_collision
-from studies.experiment.time_trace.model import close_up
+from studies.experiment.time_trace.film import strip
+from studies.experiment.time_trace.model import WORDS, close_up
+from studies.shell.film import WIDTH
+from studies.shell.plotting import style_of
 from studies.shell.scene import beam_at, single_mode_of
 
 
@@ -19,7 +25,7 @@ def test_the_orbit_of_figure_4_the_ringing_of_its_impact_and_its_film(run_study)
     assert (ran.code, summary["period"], summary["impacts"]) == (0, 4, 1)
     times = summary["impact_times_s"]
     assert len(times) == 2 and times[1] - times[0] == pytest.approx(4 / 21.5, rel=1e-8)
-    assert summary["collisions"][0]["energy_to_higher_modes"] > 0.0
+    assert summary["rows"][0]["energy_to_higher_modes"] > 0.0
     modes = {peak["mode"]: peak for peak in summary["peaks"] if peak["mode"]}
     for number, peak in modes.items():
         assert abs(peak["frequency_hz"] - summary["modes_hz"][number - 1]) <= 21.5
@@ -39,10 +45,24 @@ def test_the_orbit_of_figure_4_the_ringing_of_its_impact_and_its_film(run_study)
     assert {"motion.gif", "motion.pvd"} <= set(ran.manifest["files"])
 
 
+def test_a_collision_has_words_for_each_column():
+    assert WORDS.keys() == {field.name for field in fields(Collision)}
+
+
+def test_the_strip_of_a_film_has_one_size_in_every_style():
+    orbit = SimpleNamespace(duration=0.1, time=[0.05], tip=[0.01], touched=[True])
+    trace = SimpleNamespace(time=np.linspace(0.0, 0.1, 5), tip=np.linspace(0.0, 0.01, 5))
+    sizes = set()
+    for name in ("paper", "slide"):
+        with style_of(name):
+            sizes.add(strip(orbit, trace, 0.01)(0).shape)
+    assert len(sizes) == 1 and {shape[1] for shape in sizes} == {WIDTH}
+
+
 def test_below_grazing_there_is_no_impact_and_one_line(run_study, letter_scene):
     ran = run_study("time_trace", "--excess", "-0.01")
     found, readout = ran.summary, ran.arrays("time_trace")["readout_m"]
-    assert (found["period"], found["impacts"], found["collisions"]) == (1, 0, [])
+    assert (found["period"], found["impacts"], found["rows"]) == (1, 0, [])
     assert [round(peak["frequency_hz"], 6) for peak in found["peaks"]] == [21.5]
     assert found["peaks"][0]["amplitude"] == pytest.approx(0.5 * np.ptp(readout), rel=1e-3)
     kept = beam_at(letter_scene.replace({"modes.count": len(found["modes_hz"])}), 21.5)

@@ -130,7 +130,6 @@ def time_trace(
         "letter": seen,
         "impacts": impacts,
         "impact_times_s": trace.impact_times,
-        "collisions": trace.collisions,
         "modes_hz": model.frequencies_hz,
         "peaks": peaks,
         "peak_unit": unit,
