@@ -2,7 +2,7 @@
 
     scenery = Scenery.of(modes, ball_radius=2.5e-3, gap=0.0119, swing=0.013)
     with stage_of(scenery) as stage:
-        write_film(stage, moments, run.path("motion.gif", "The motion."))
+        write_film(run, "motion", "The motion.", stage, moments)
 
 `Moment` says where everything is: displacements of the points of the strip, of the ball and of the base,
 whether the plate is touched, and what is written above. pyvista draws off the screen where that works.
@@ -24,6 +24,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -33,6 +34,8 @@ from numpy.typing import NDArray
 from beam import BALL, BRASS, LAYER, STRIP, Material, Modes, SpringMesh, solid_spring
 from studies.shell.executors import say
 from studies.shell.files import write_atomically
+from studies.shell.programs import needs
+from studies.shell.run import Run
 
 Array = NDArray[np.float64]
 Picture = NDArray[np.uint8]
@@ -74,8 +77,6 @@ TOWARDS_VIEWER = np.array([0.20, 0.30, 0.93])
 COLOURS = {LAYER: "#4A4A4A", BALL: "#E9EDF2"}
 PLATE, TOUCHED = "#8C9AA8", "#FF7A1A"
 """The plate, and its edges and all marks while it is touched."""
-TEXT = ("black", "#5A5A5A")
-"""The first line of text, and the others."""
 
 
 def metal(material: Material) -> str:
@@ -132,7 +133,8 @@ class Scenery:
         return Scenery(mesh=mesh, plate=plate, room=room, strip=strip)
 
 
-Stage = Callable[[Moment], Picture]
+Stage, Below = Callable[[Moment], Picture], Callable[[int], Picture]
+"""What turns a moment into a picture; what turns the number of a frame into the picture below it."""
 
 
 @contextmanager
@@ -236,15 +238,9 @@ def _painter(scenery: Scenery) -> Stage:
 
 
 def write_film(
-    stage: Stage,
-    moments: Sequence[Moment],
-    gif: Path,
-    mp4: Path | None = None,
-    *,
-    below: Callable[[int], Picture] | None = None,
-    track: Callable[[Iterable[int]], Iterable[int]] = iter,
+    run: Run, name: str, holds: str, stage: Stage, moments: Sequence[Moment], *, below: Below | None = None
 ) -> None:
-    """Film the moments with their lines of text, and `below` each its strip, as gif and, if given, as mp4.
+    """Film the moments with their text, and what is `below` each: NAME.gif, with a strip below NAME.mp4 too.
 
     One picture is drawn after the other, so that memory does not grow with the film.
     """
@@ -255,19 +251,22 @@ def write_film(
 
     def framed(chosen: Iterable[int]) -> Iterator[Picture]:
         for number in chosen:
-            parts = [stage(moments[number]), *([below(number)] if below else [])]
-            image = Image.fromarray(np.concatenate(parts))
-            pen = ImageDraw.Draw(image)
-            for row, line in enumerate(moments[number].lines):
-                last = row == len(moments[number].lines) - 1
-                colour = TOUCHED if last and moments[number].touched else TEXT[min(row, 1)]
-                pen.text((12, 8 + 24 * row), line, fill=colour, font=font)
+            moment = moments[number]
+            parts = [stage(moment), *([below(number)] if below else [])]
+            image, last = Image.fromarray(np.concatenate(parts)), len(moment.lines) - 1
+            for row, line in enumerate(moment.lines):
+                colour = TOUCHED if moment.touched and row == last else "#5A5A5A" if row else "black"
+                ImageDraw.Draw(image).text((12, 8 + 24 * row), line, fill=colour, font=font)
             yield np.asarray(image, dtype=np.uint8)
 
-    count = len(moments)
-    marked = next((number for number, moment in enumerate(moments) if moment.touched), 0)
-    samples, pictures = list(framed([0, count // 2, count - 1, marked])), framed(track(range(count)))
-    write_gif(gif, written_as_mp4(mp4, pictures, RATE) if mp4 else pictures, RATE, samples=samples)
+    count, touched = len(moments), [number for number, moment in enumerate(moments) if moment.touched]
+    samples = list(framed([0, count // 2, count - 1, *touched[:1]]))
+    pictures = framed(run.track(range(count), "frames") if below else range(count))
+    if below and can_encode():
+        pictures = written_as_mp4(run.path(f"{name}.mp4", holds), pictures, RATE)
+    elif below:
+        run.say(needs("no mp4: it", "imageio-ffmpeg"))
+    write_gif(run.path(f"{name}.gif", holds), pictures, RATE, samples=samples)
 
 
 def can_encode() -> bool:
@@ -300,24 +299,14 @@ def written_as_mp4(path: Path, pictures: Iterable[Picture], rate: float) -> Iter
     that browsers play."""
     import imageio_ffmpeg
 
-    writer = None
+    pictures, options = iter(pictures), {"fps": rate, "codec": "libx264", "quality": 8, "macro_block_size": 2}
+    first = next(pictures)
     with tempfile.TemporaryDirectory(dir=path.parent, prefix=f".{path.name}.") as folder:
-        temporary = Path(folder) / path.name
-        for one in pictures:
-            if writer is None:
-                writer = imageio_ffmpeg.write_frames(
-                    str(temporary),
-                    (one.shape[1], one.shape[0]),
-                    fps=rate,
-                    codec="libx264",
-                    pix_fmt_out="yuv420p",
-                    quality=8,
-                    macro_block_size=2,
-                    ffmpeg_log_level="error",
-                )
-                writer.send(None)
+        temporary, size = Path(folder) / path.name, first.shape[1::-1]
+        writer = imageio_ffmpeg.write_frames(str(temporary), size, ffmpeg_log_level="error", **options)
+        writer.send(None)
+        for one in chain([first], pictures):
             writer.send(np.ascontiguousarray(one))
             yield one
-        if writer is not None:
-            writer.close()
-            os.replace(temporary, path)
+        writer.close()
+        os.replace(temporary, path)

@@ -11,7 +11,6 @@ Writes:  keys.csv (before and after), calibrated.toml, a scene that every study 
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated
@@ -19,10 +18,9 @@ from typing import Annotated
 from studies.physics.calibration import Targets, calibrate_all, collision_at
 from studies.shell.columns import written
 from studies.shell.scene import Scene, beam_at, harmonic
-from studies.shell.scene.values import KEYS
 from studies.shell.study import Run, study
 
-FITTED = ("spring.thickness_m", "spring.tape_loss_factor", "stop.gap_m", "tip.mass_kg")
+KEYS = ("spring.thickness_m", "spring.tape_loss_factor", "stop.gap_m", "tip.mass_kg")
 
 SMALL = 1e-3
 """Relative change of a key by the fit that is none."""
@@ -32,8 +30,7 @@ SMALL = 1e-3
 class Fitted:
     """One key of the scene."""
 
-    key: Annotated[str, "key of the scene"]
-    unit: Annotated[str, "unit"]
+    key: Annotated[str, "key of the scene; its name ends in the unit"]
     before: Annotated[float, "before the fit"]
     after: Annotated[float, "after the fit"]
 
@@ -43,10 +40,7 @@ def calibrate(scene: Scene, run: Run) -> Mapping[str, object]:
     """Fit, report and write the scene."""
     targets = Targets.of(harmonic(scene))
     fitted = calibrate_all(scene, targets)
-    rows = [
-        Fitted(key=name, unit=KEYS[name].unit, before=scene.number(name), after=fitted.number(name))
-        for name in FITTED
-    ]
+    rows = [Fitted(key=key, before=scene.number(key), after=fitted.number(key)) for key in KEYS]
     run.table("keys", rows, "Keys of the scene before and after the fit.", of=Fitted)
     run.text("calibrated.toml", fitted.dump(), "The scene with the fitted keys, for --scene.")
     collision = collision_at(fitted, targets.frequency_hz, targets.excess)
@@ -54,15 +48,10 @@ def calibrate(scene: Scene, run: Run) -> Mapping[str, object]:
     run.verdict(
         "drive_amplitude", "fitted", found=f"{1e3 * amplitude:.3f} mm at grazing, {targets.frequency_hz:g} Hz"
     )
-    change = max(abs(row.after / row.before - 1.0) if row.before else math.inf for row in rows)
-    if change < SMALL:
-        run.finding(
-            "The scene meets the four numbers already: the fit changes no key by more than a thousandth."
-        )
-    else:
-        run.finding("The fit changes the scene: take calibrated.toml as the scene of the other studies.")
+    same = all(abs(row.after - row.before) <= SMALL * abs(row.before) for row in rows)
+    change = "changes no key of the scene by more than a thousandth" if same else "changes the scene"
+    run.finding(f"The fit to the four numbers {change}.")
     run.finding(f"The ball with its mount weighs {written(1e3 * fitted.tip.mass_kg, 3)} g after the fit.")
-    run.finding(f"The gap that gives the drive amplitude is {written(1e3 * fitted.stop.gap_m, 3)} mm.")
     return {
         "rows": rows,
         "kick": collision.kick,

@@ -17,7 +17,7 @@ Writes:  modes.csv (the table), modes.npz (shapes along the strip), modes.png; f
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated
 
@@ -70,7 +70,10 @@ def modes(
     if mode > len(rows):
         raise SceneError(f"--mode must be at most {len(rows)}, the modes of this scene, not {mode}")
     run.table("modes", rows, "The natural modes of the spring, lowest first.", of=NaturalMode)
-    tell(run, rows)
+    run.finding(f"The lowest mode of the spring has a frequency of {written(rows[0].frequency_hz)} Hz.")
+    every = "Every mode of the spring moves the ball towards the plate, so impacts excite all of them."
+    some = "Some modes of the spring move the ball along the legs at most; impacts do not excite them."
+    run.finding(every if all(row.coupled for row in rows) else some)
     if solved is None:
         run.say("measured modes have no shapes: nothing to draw or to look at in ParaView")
     else:
@@ -125,14 +128,12 @@ def write_shapes(scene: Scene, run: Run, solved: Modes, mode: int, frames: int) 
         tip_at_m=solved.discretization.spring.tip_at,
     )
     rates = np.nan_to_num(damping_of(scene).decay_rates(solved))
-    meshes, film = run.path("modes.vtu", "The modes for ParaView: Warp By Vector."), f"mode {mode + 1}"
+    meshes = run.path("modes.vtu", "The modes for ParaView: Warp By Vector.")
     write_modes(meshes, solved, decay_rates=rates, largest=largest, ball_radius=radius)
-    motion = run.path("motion.pvd", f"One period of {film} for ParaView.")
+    motion = run.path("motion.pvd", f"One period of mode {mode + 1} for ParaView.")
     write_mode_motion(motion, solved, mode, frames=frames, largest=largest, ball_radius=radius)
     run.path("motion_frames", "Frames of motion.pvd: points of the spring [m].")
-    caption = (
-        "Shapes of the lowest modes in the plane of the strip, enlarged to the same largest displacement."
-    )
+    caption = "Shapes of the lowest modes in the plane of the strip, enlarged to one largest displacement."
     run.figure("modes", in_house_style(draw)(solved), caption)
 
 
@@ -145,10 +146,9 @@ def write_films(run: Run, solved: Modes, radius: float, count: int, frames: int)
             shape = scenery.mesh.normalised(largest)[number]
             phases = 2.0 * math.pi * np.arange(frames) / frames
             name = f"mode {number + 1}: {solved.frequencies_hz[number]:.1f} Hz"
-            moments = [
-                Moment(points=math.cos(phase) * shape, base=np.zeros(3), lines=[name]) for phase in phases
-            ]
-            write_film(stage, moments, run.path(f"mode_{number + 1}.gif", f"One period of {name}, enlarged."))
+            swings = [math.cos(phase) * shape for phase in phases]
+            moments = [Moment(points=points, base=np.zeros(3), lines=[name]) for points in swings]
+            write_film(run, f"mode_{number + 1}", f"One period of {name}, enlarged.", stage, moments)
 
 
 def judge(scene: Scene, run: Run) -> None:
@@ -157,20 +157,6 @@ def judge(scene: Scene, run: Run) -> None:
     same = abs(period - letter.FREE_PERIOD_S) <= letter.FREE_PERIOD_ERROR_S
     verdict = "fitted" if same and told == "calibrated" else "agrees" if same else "differs"
     run.verdict("free_period", verdict, found=f"{1e3 * period:.2f} ms")  # type: ignore[arg-type]
-
-
-def tell(run: Run, rows: Sequence[NaturalMode]) -> None:
-    """The findings."""
-    run.finding(f"The lowest mode of the spring has a frequency of {written(rows[0].frequency_hz)} Hz.")
-    free = [f"{row.mode}" for row in rows if not row.coupled]
-    if free:
-        run.finding(
-            "The spring has modes that move the ball along the legs at most; impacts do not excite them."
-        )
-    else:
-        run.finding(
-            "Every mode of the spring moves the ball towards the plate, so impacts excite all of them."
-        )
 
 
 def draw(solved: Modes) -> Figure:

@@ -139,23 +139,21 @@ def time_trace(
 
 def repeats(period: int) -> str:
     """When the motion repeats."""
-    if period < 2:
-        return "it repeats in each drive period" if period else "it has no period up to 64 drive periods"
-    return f"it repeats after {period} drive periods"
+    whole = "each drive period" if period == 1 else f"{period} drive periods"
+    return (
+        f"the motion repeats after {whole}" if period else "the motion has no period up to 64 drive periods"
+    )
 
 
 def tell(run: Run, period: int, impacts: int, found: Sequence[Collision], higher: Sequence[int]) -> None:
     """The findings."""
-    touches = {0: " and never touches the plate", 1: ", with one impact"}.get(
-        impacts, ", with several impacts"
-    )
-    run.finding(f"The motion settles: {repeats(period)}{touches if period else ''}.")
+    touches = ("" if impacts else " and never touches the plate") if impacts != 1 else ", with one impact"
+    run.finding(f"{repeats(period).capitalize()}{touches}.")
     if found and math.isfinite(found[0].restitution):
-        run.finding(
-            f"Mode 1 leaves a collision with {written(found[0].restitution, 2)} times its approach velocity."
-        )
+        left = written(found[0].restitution, 2)
+        run.finding(f"Mode 1 leaves a collision with {left} times its approach velocity.")
     if found and higher:
-        run.finding(f"Higher modes ring after the impact; {len(higher)} of them have a peak in the spectrum.")
+        run.finding(f"Higher modes ring after the impact; the spectrum has a peak at {len(higher)} of them.")
 
 
 def judge(run: Run, period: str, seen: int, found: Sequence[Collision], higher: Sequence[int]) -> None:

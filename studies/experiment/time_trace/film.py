@@ -22,9 +22,8 @@ The departure leaves the tip where it is: with any M the ball meets the plate wh
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -40,19 +39,15 @@ from studies.shell.film import (
     RATE,
     TOUCHED,
     WIDTH,
+    Below,
     Moment,
     Picture,
     Scenery,
-    can_encode,
     stage_of,
     write_film,
 )
-from studies.shell.programs import needs
-from studies.shell.scene import Scene, modes_of, shift_at_gap
+from studies.shell.scene import Scene, modes_of
 from studies.shell.study import Run
-
-LARGEST_SHIFT = 0.01
-"""Relative change of the free frequency with amplitude [1]; a linear film above this bound is misleading."""
 
 CUE = 2.0
 """Times slower than the flight, from where on the film says so in words."""
@@ -72,24 +67,17 @@ def film(
     frames: int,
 ) -> Mapping[str, object]:
     """Film one period of a settled orbit; returns what the summary keeps of it."""
-    modes = modes_of(scene)
+    modes, gap, radius = modes_of(scene), scene.stop.gap_m, scene.tip.ball_radius_m
     orbit = film_orbit(oscillator, settled.end, settled.period, frames=frames, rate=RATE)
-    gap, swing, radius = scene.stop.gap_m, float(np.abs(orbit.tip).max()), scene.tip.ball_radius_m
-    if (shift := abs(shift_at_gap(scene)) * (swing / gap) ** 2) > LARGEST_SHIFT:
-        off = f"would change its free frequency by {100.0 * shift:.2g} %"
-        run.warn(f"the model is linear, but the tip moves by {swing:.3g} m, which {off}")
-    scenery = Scenery.of(modes, ball_radius=radius, gap=gap, swing=swing)
+    scenery = Scenery.of(modes, ball_radius=radius, gap=gap, swing=float(np.abs(orbit.tip).max()))
     drawn, magnification = drawn_shapes(scenery.mesh, modes, orbit.coordinates)
     true, _ = drawn_shapes(scenery.mesh, modes, orbit.coordinates, 1.0)
     enlarged = [f"higher modes are drawn {magnification:g} times larger"] if magnification > 1.0 else []
     moments = [
-        Moment(
-            points=points,
-            base=orbit.base[i] * DRIVE,
-            touched=bool(orbit.touched[i]),
-            lines=[words, *enlarged, *lines_of(orbit, i)],
+        Moment(points=points, base=base * DRIVE, touched=bool(touched), lines=[words, *enlarged, *lines])
+        for points, base, touched, lines in zip(
+            drawn, orbit.base, orbit.touched, lines_of(orbit), strict=True
         )
-        for i, points in enumerate(drawn)
     ]
 
     def grids() -> Iterator[tuple[float, Any]]:
@@ -103,25 +91,24 @@ def film(
     run.path("motion_frames", "Frames of motion.pvd: points as drawn, true displacement [m].")
     slow = f"{orbit.slowed.min():.0f} to {orbit.slowed.max():.0f} times slower than life"
     run.say(f"{words}: {len(orbit.contacts)} contacts, {slow}")
-    if not can_encode():
-        run.say(needs("no mp4: it", "imageio-ffmpeg"))
-    seen = "One period of the orbit, slow at the collision; below, the tip against time."
-    mp4 = run.path("motion.mp4", seen) if can_encode() else None
-    gif, track = run.path("motion.gif", seen), partial(run.track, unit="frames")
+    holds = "One period of the orbit, slow at the collision; below, the ball against time."
     with stage_of(scenery, simple=run.quick) as stage:
-        write_film(stage, moments, gif, mp4, below=strip(orbit, trace, gap), track=track)
+        write_film(run, "motion", holds, stage, moments, below=strip(orbit, trace, gap))
     return {"contacts_s": orbit.contacts, "magnification": magnification}
 
 
-def lines_of(orbit: FilmedOrbit, i: int) -> tuple[str, str]:
-    """What is written above a frame: how slow it is shown, time and tip."""
-    factor = float(f"{orbit.slowed[i]:.2g}")
-    cue = ", near the impact" if orbit.slowed[i] > CUE * orbit.slowed.min() else ""
-    place = "touches the plate" if orbit.touched[i] else f"is at {minus(f'{1e3 * orbit.tip[i]:.2f}')} mm"
-    return f"slow motion: {factor:g} times slower{cue}", f"at {1e3 * orbit.time[i]:.2f} ms the ball {place}"
+def lines_of(orbit: FilmedOrbit) -> Iterator[tuple[str, str]]:
+    """What is written above each frame: how slow it is shown, time and tip."""
+    for time, tip, slowed, touched in zip(orbit.time, orbit.tip, orbit.slowed, orbit.touched, strict=True):
+        cue = ", near the impact" if slowed > CUE * orbit.slowed.min() else ""
+        place = "touches the plate" if touched else f"is at {minus(f'{1e3 * tip:.2f}')} mm"
+        yield (
+            f"slow motion: {float(f'{slowed:.2g}'):g} times slower{cue}",
+            f"at {1e3 * time:.2f} ms the ball {place}",
+        )
 
 
-def strip(orbit: FilmedOrbit, trace: Trace, gap: float) -> Callable[[int], Picture]:
+def strip(orbit: FilmedOrbit, trace: Trace, gap: float) -> Below:
     """The tip against time, as it stands below a frame, with a mark at the time of the frame."""
     from PIL import Image, ImageDraw
 
@@ -131,9 +118,7 @@ def strip(orbit: FilmedOrbit, trace: Trace, gap: float) -> Callable[[int], Pictu
         figure, axes = new_figure(width=WIDTH / DOTS * INCH, height=150 / DOTS * INCH)
         axes.plot(1e3 * trace.time, 1e3 * trace.tip, color=BLUE)
         axes.axhline(1e3 * gap, **GUIDE)
-        axes.annotate(
-            "plate", (1.0, 1e3 * gap), xycoords=axes.get_yaxis_transform(), fontsize=NOTE, va="center"
-        )
+        axes.text(1.0, 1e3 * gap, "plate", transform=axes.get_yaxis_transform(), fontsize=NOTE, va="center")
         axes.set_xlim(0.0, 1e3 * orbit.duration)
         label(axes.xaxis, "time", "ms")
         label(axes.yaxis, "ball", "mm")

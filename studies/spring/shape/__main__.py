@@ -66,10 +66,8 @@ def judge(run: Run, readings: Mapping[Reading, ReadingRow]) -> None:
         f"a plain strip of the same period has it at {plain.ratio_twist:.1f} times; in that of "
         f'"{TITLES[least]}" the ball turns least, {turn:.2f} of this.',
     )
-    run.finding(
-        f'Of the U shapes, "{TITLES[highest]}" has its first twist mode highest, at {twist:.1f} times the '
-        "frequency of the first bending mode."
-    )
+    of = f'Of the U shapes, "{TITLES[highest]}" has its first twist mode highest'
+    run.finding(f"{of}, at {twist:.1f} times the frequency of the first bending mode.")
 
 
 def compare_plate(scene: Scene, run: Run) -> list[OrbitEnds]:
@@ -104,13 +102,9 @@ def finite_amplitude(scene: Scene, run: Run) -> list[Survival]:
     shown = ("reading", "bend_radius_m", "gap_m", "tip_mass_kg", "kappa", "survive")
     run.table("springs", rows, "Springs by shape, bend radius, gap and ball.", of=Survival, show=shown)
     run.figure("finite_amplitude", figure.draw_survival(scene, rows, run.letters), figure.SURVIVAL)
-    own = (scene.spring.bend_radius_m, scene.stop.gap_m, scene.tip.mass_kg)
-    folded = (row for row in rows if row.reading == TITLES["folded"])
-    row = next(row for row in folded if (row.bend_radius_m, row.gap_m, row.tip_mass_kg) == own)
-    bends = (
-        f"Folded with the scene's bend, the strip {'softens' if row.kappa < 0.0 else 'stiffens'} as it swings"
-    )
-    run.finding(
-        f"{bends} and keeps {row.survive or 'none'} of the letter's periods." if run.letters else f"{bends}."
-    )
+    own = TITLES["folded"], scene.spring.bend_radius_m, scene.stop.gap_m, scene.tip.mass_kg
+    row = next(r for r in rows if (r.reading, r.bend_radius_m, r.gap_m, r.tip_mass_kg) == own)
+    kept = f" and keeps {row.survive or 'none'} of the letter's periods" if run.letters else ""
+    bends = "softens" if row.kappa < 0.0 else "stiffens"
+    run.finding(f"Folded with the scene's bend, the strip {bends} as it swings{kept}.")
     return rows

@@ -26,9 +26,8 @@ def draw_survival(scene: Scene, rows: Sequence[Survival], letters: bool) -> Figu
         change = 100.0 * row.kappa * (row.gap_m / row.length_m) ** 2
         colour = plotting.tint(plotting.SKY, row.survive / count) if letters else "white"
         chart.scatter(*place, s=140, color=colour, edgecolor="0.6" if letters else "white", linewidth=0.5)
-        chart.annotate(
-            str(row.survive) if letters else written(round(change, 2), 1), place, ha="center", va="center"
-        )
+        words = str(row.survive) if letters else written(round(change, 2), 1)
+        chart.annotate(words, place, ha="center", va="center")
     kept = f"number: periods of the letter that are kept, of {count}"
     chart.set_title(kept if letters else "change of the free frequency at the gap (%)", loc="left")
     chart.set_xticks(range(len(radii)), [f"{1e3 * radius:.3g}" for radius in radii])
