@@ -41,9 +41,7 @@ Array = NDArray[np.float64]
 Picture = NDArray[np.uint8]
 """Rows, columns, and red, green, blue."""
 
-NO_RENDERING = (
-    "off-screen rendering does not work here (on Debian it needs libegl1 libegl-mesa0 libgl1-mesa-dri)"
-)
+NO_RENDERING = "off-screen rendering does not work here (Debian: libegl1 libegl-mesa0 libgl1-mesa-dri)"
 
 TRIAL = (
     "import pyvista; plotter = pyvista.Plotter(off_screen=True, window_size=(32, 32)); "
@@ -133,8 +131,9 @@ class Scenery:
         return Scenery(mesh=mesh, plate=plate, room=room, strip=strip)
 
 
-Stage, Below = Callable[[Moment], Picture], Callable[[int], Picture]
-"""What turns a moment into a picture; what turns the number of a frame into the picture below it."""
+Stage = Callable[[Moment], Picture]
+Below = Callable[[int], Picture]
+"""What stands below the frame of this number."""
 
 
 @contextmanager
@@ -161,12 +160,10 @@ def can_render() -> bool:
     """Whether a picture could be drawn without a window; tried once."""
     prepare_off_screen()
     try:
-        trial = subprocess.run(
-            [sys.executable, "-c", TRIAL], capture_output=True, timeout=PATIENCE, check=False
-        )
+        command = [sys.executable, "-c", TRIAL]
+        return not subprocess.run(command, capture_output=True, timeout=PATIENCE, check=False).returncode
     except (OSError, subprocess.SubprocessError):
         return False
-    return trial.returncode == 0
 
 
 @contextmanager
@@ -240,10 +237,7 @@ def _painter(scenery: Scenery) -> Stage:
 def write_film(
     run: Run, name: str, holds: str, stage: Stage, moments: Sequence[Moment], *, below: Below | None = None
 ) -> None:
-    """Film the moments with their text, and what is `below` each: NAME.gif, with a strip below NAME.mp4 too.
-
-    One picture is drawn after the other, so that memory does not grow with the film.
-    """
+    """Film the moments with their text as NAME.gif; with what is `below` each, as NAME.mp4 too."""
     from matplotlib.font_manager import findfont
     from PIL import Image, ImageDraw, ImageFont
 
@@ -282,15 +276,8 @@ def write_gif(path: Path, pictures: Iterable[Picture], rate: float, *, samples: 
     palette = Image.fromarray(np.concatenate(samples)).quantize(127, dither=Image.Dither.NONE)
     images = (Image.fromarray(one).quantize(palette=palette, dither=Image.Dither.NONE) for one in pictures)
     stream = io.BytesIO()
-    next(images).save(
-        stream,
-        format="GIF",
-        save_all=True,
-        append_images=images,
-        loop=0,
-        optimize=False,
-        duration=10 * max(2, round(100.0 / rate)),
-    )
+    options: Any = {"save_all": True, "append_images": images, "loop": 0, "optimize": False}
+    next(images).save(stream, format="GIF", duration=10 * max(2, round(100.0 / rate)), **options)
     return write_atomically(path, stream.getvalue())
 
 
@@ -299,8 +286,8 @@ def written_as_mp4(path: Path, pictures: Iterable[Picture], rate: float) -> Iter
     that browsers play."""
     import imageio_ffmpeg
 
-    pictures, options = iter(pictures), {"fps": rate, "codec": "libx264", "quality": 8, "macro_block_size": 2}
-    first = next(pictures)
+    options: Any = {"fps": rate, "codec": "libx264", "quality": 8, "macro_block_size": 2}
+    first = next(pictures := iter(pictures))
     with tempfile.TemporaryDirectory(dir=path.parent, prefix=f".{path.name}.") as folder:
         temporary, size = Path(folder) / path.name, first.shape[1::-1]
         writer = imageio_ffmpeg.write_frames(str(temporary), size, ffmpeg_log_level="error", **options)

@@ -47,10 +47,10 @@ def test_the_orbit_of_figure_4_the_ringing_of_its_impact_and_its_film(run_study)
 
 
 def test_the_strip_of_a_film_has_one_size_in_every_style():
-    orbit = SimpleNamespace(duration=0.1, time=[0.05], tip=[0.01], touched=[True])
+    orbit, trace = SimpleNamespace(duration=0.1, time=[0.05], tip=[0.01], touched=[True]), np.ones(2)
     for name in ("paper", "slide"):
         with style_of(name):
-            assert strip(orbit, SimpleNamespace(time=[0.0, 0.1], tip=[0.0, 0.01]), 0.01)(0).shape[1] == WIDTH
+            assert strip(orbit, SimpleNamespace(time=trace, tip=trace), 0.01)(0).shape[1] == WIDTH
 
 
 def test_below_grazing_there_is_no_impact_and_one_line(run_study, letter_scene):
