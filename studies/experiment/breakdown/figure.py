@@ -56,11 +56,11 @@ def draw_scans(
         for axis in pair:
             for way, diagram in ways.items():
                 look, words = LOOKS[way]
-                if way != "island" and axis is pair[0] and not np.all(periods(diagram)):
-                    pale: plotting.Style = {"color": plotting.tint(look[0], plotting.PALE), "markersize": 2.0}
-                    axis.plot([], [], "o", **pale, label="pale: not settled")
                 settled = (periods(diagram) > 0) | (way == "island")
                 plotting.strobe_points(axis, 1e2 * diagram.excess, 1e3 * diagram.points, settled, look, words)
+            if any(not np.all(periods(ways[way])) for way in ("up", "down")):
+                pale: plotting.Style = {"color": plotting.tint(DOWN[0], plotting.PALE), "markersize": 2.6}
+                axis.plot([], [], "o", mfc="none", **pale, label="pale: not settled")
             axis.axvline(0.0, **GUIDE, label="grazing")
         pair[0].set_xlim(1e2 * min(float(d.excess.min()) for d in ways.values()) - 0.3, 0.02)
         pair[1].set_xlim(-0.03, 1e2 * HIGHEST + 0.03)

@@ -68,7 +68,7 @@ def draw_curves(scene: Scene, rows: Sequence[Folds], *, letters: bool) -> Figure
     if letters:
         stable = "letter: stability of the amplitude"
         plotting.mark_letter(axes[1].yaxis, letter.AMPLITUDE_STABILITY, words=stable, along=0.01)
-    plotting.label(axes[0].yaxis, "end of p$_m$, $F_m/F_g - 1$")
+    plotting.label(axes[0].yaxis, "$F_m/F_g - 1$")
     plotting.label(axes[1].yaxis, plotting.HYSTERESIS)
     plotting.label(axes[1].xaxis, "drive frequency", "Hz")
     plotting.legend_below(figure, axes[:1], 3)
