@@ -148,9 +148,9 @@ def drawn(
     else:
         folds = folds_of_beam(oscillator, edges, frequencies, lowest)
     holds = (
-        "Cells over the scan (first upward), the drive frequency [Hz] and the excess [1]: period in drive "
-        "periods (0 for none), impacts in a period, and drive periods spent; -1 where a cell failed."
+        "Period (0: none), impacts in a period and drive periods spent (-1: failed) by scan (upward first), "
     )
+    holds += "drive frequency [Hz] and excess [1]."
     run.arrays(f"chart_{model}", holds, frequency_hz=frequencies, excess=excesses, **cells)
     run.table(f"folds_{model}", folds, "Exact folds of p_m orbits with one impact.", of=Fold, show=())
     run.figure(f"chart_{model}", draw(plane, cells, edges, folds, TITLES[model]), CAPTION)
@@ -207,10 +207,8 @@ def basins(scene: Scene, run: Run, f: float, side: int) -> Mapping[str, object]:
 
     plane = settled.plane_of(scene, f, side)
     leads = np.array(run.map(plane.line, plane.velocity.tolist(), "rows of the basins"))
-    holds = (
-        "Starts on the strobe plane, x [m] and velocity [m/s], and where each leads: the period of the orbit, "
-        "0 for something else, -1 behind the stop; velocities downwards, x across."
-    )
+    holds = "Starts, x [m] across and velocity [m/s] down, and the period of the orbit to which each leads "
+    holds += "(0: something else, -1: behind the stop)."
     run.arrays("basins", holds, x=plane.x, velocity=plane.velocity, leads=leads)
     run.figure("basins", figure.draw_basins(plane, leads, f), figure.BASINS)
     period, shares = plane.period, settled.parts(leads, plane.period)

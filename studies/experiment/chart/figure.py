@@ -37,7 +37,7 @@ from studies.shell import plotting
 from studies.shell.columns import written
 
 SEVEN = plotting.PALETTE[1:8]
-PERIODS = ["white", *SEVEN, *(plotting.tint(one, 0.45) for one in SEVEN), "0.66"]
+PERIODS = ["white", *SEVEN, *(plotting.tint(one, 0.45) for one in SEVEN), "#A0785A"]
 """Colours of no impact, of the periods 1 to 14, and of a longer one."""
 
 CLASSES = {1: "1", 2: "2", 3: "3", 4: "4\u20135", 6: "6\u20138", 9: "9 or more"}
@@ -47,14 +47,11 @@ IMPACTS = ["white", *map(to_hex, VIRIDIS(np.linspace(1.0, 0.1, len(CLASSES))))]
 
 NONE, FAILED = "0.33", "red"
 
-LEAST_WIDTH = 0.032
+LEAST_WIDTH = 0.04
 """Part of a panel's sides that a region must have in any direction to be given its number."""
 
-APART = 0.012
-"""Part of a panel's width by which band edges must be apart to be marked."""
-
-EDGE = 0.002
-"""Half the height of the marks for band edges, which hold at grazing [excess]."""
+EDGE = 0.0006
+"""Distance of the marks for band edges from grazing, where they hold [excess]."""
 
 TICKS = (-0.1, -0.03, -0.01, -0.003, 0.0, 0.003, 0.01, 0.03, 0.1)
 
@@ -93,28 +90,25 @@ def draw(
     for axis in axes[:, 0]:
         axis.set_yticks(sheared(TICKS), [written(t) for t in TICKS])
         plotting.label(axis.yaxis, plotting.EXCESS)
-    period, hit = cells["period"], (cells["impacts"] > 0) & (cells["period"] > 0)
-    capped, classes = (
-        np.minimum(period, len(PERIODS) - 1),
-        np.searchsorted(list(CLASSES), cells["impacts"], "right"),
-    )
-    known = {f"p$_{{{m}}}$": PERIODS[m] for m in range(1, len(PERIODS) - 1) if np.any(hit & (capped == m))}
-    known |= {f"{len(PERIODS) - 1} to 64": PERIODS[-1]} if np.any(hit & (capped == len(PERIODS) - 1)) else {}
-    _key(axes[0, 1], "period", known, period)
-    shown = {names[k]: IMPACTS[k] for k in range(1, len(names)) if np.any(hit & (classes == k))}
-    _key(axes[1, 1], "impacts", shown, period)
+    hit = (cells["impacts"] > 0) & (cells["period"] > 0)
+    seen = set(np.minimum(cells["period"][hit], len(PERIODS) - 1).tolist())
+    texts = {m: f"p$_{{{m}}}$" for m in range(len(PERIODS) - 1)} | {
+        len(PERIODS) - 1: f"{len(PERIODS) - 1} to 64"
+    }
+    failed = bool(np.any(cells["period"] < 0))
+    _key(axes[0, 1], "period", {texts[m]: PERIODS[m] for m in sorted(seen)}, failed)
+    seen = set(np.searchsorted(list(CLASSES), cells["impacts"][hit], side="right").tolist())
+    _key(axes[1, 1], "impacts", {names[k]: IMPACTS[k] for k in sorted(seen)}, failed)
     plotting.legend_below(figure, axes.flat, 4)
     return figure
 
 
-def _key(axis: Axes, title: str, colours: Mapping[str, str], period: Integers) -> None:
+def _key(axis: Axes, title: str, colours: Mapping[str, str], failed: bool) -> None:
     """The colours of a row of panels, right of it; with what both rows have in common."""
-    common = {"no impact": "white", "no period": NONE} | ({"failed": FAILED} if np.any(period < 0) else {})
-    look: plotting.Style = {"edgecolor": "0.3", "linewidth": 0.4}
-    marks = {name: Patch(facecolor=colour, **look) for name, colour in {**colours, **common}.items()}
+    known = {**colours, "no impact": "white", "no period": NONE, **({"failed": FAILED} if failed else {})}
+    marks = [Patch(facecolor=colour, edgecolor="0.3", linewidth=0.4) for colour in known.values()]
     place: plotting.Style = {"loc": "center left", "bbox_to_anchor": (1.0, 0.5), "handlelength": 1.0}
-    key = axis.legend(marks.values(), marks.keys(), title=title, ncols=2 if len(marks) > 9 else 1, **place)
-    key.set_in_layout(True)
+    axis.legend(marks, known.keys(), title=title, ncols=2 if len(marks) > 9 else 1, **place)
 
 
 def _write_numbers(
@@ -129,7 +123,7 @@ def _write_numbers(
             sides = [1.0 / count for count in values.shape]
             depth = ndimage.distance_transform_edt(np.pad(marks == mark, 1), sampling=sides)[1:-1, 1:-1]
             i, j = np.unravel_index(int(np.argmax(depth)), depth.shape)
-            if depth[i, j] < 0.5 * LEAST_WIDTH:
+            if depth[i, j] - 0.5 * min(sides) < 0.5 * LEAST_WIDTH:
                 continue
             axis.text(x[i], y[j], words[value], size=5.5, ha="center", va="center", path_effects=outline)
 
@@ -137,14 +131,11 @@ def _write_numbers(
 def _draw_theory(axis: Axes, edges: Sequence[Band], folds: Sequence[Fold]) -> None:
     """Grazing, the band edges there, and the folds."""
     axis.axhline(0.0, color="0.5", linewidth=0.6, label="grazing")
-    apart = APART * (axis.dataLim.x1 - axis.dataLim.x0)
-    uppers = [band.upper for band in edges]
-    marked = [
-        band for band, next in zip(edges, [*uppers[1:], np.inf], strict=True) if next - band.upper > apart
-    ]
-    for name, style in (("upper", "-"), ("lower", (0, (1.5, 1.0)))):
-        places, told = [getattr(band, name) for band in marked], f"{name} band edge, map"
-        axis.vlines(places, *sheared([-EDGE, EDGE]), color="black", lw=0.7, ls=style, label=told)
+    for name, place, marker in (("upper", EDGE, "v"), ("lower", -EDGE, "^")):
+        places = [getattr(band, name) for band in edges if band.period <= len(PERIODS) - 2]
+        look: plotting.Style = {"color": "black", "markeredgecolor": "white", "linestyle": "none"}
+        height = np.full(len(places), sheared(place))
+        axis.plot(places, height, marker=marker, markersize=4, **look, label=f"{name} band edge, map")
     for period in sorted({fold.period for fold in folds}):
         curve = [fold for fold in folds if fold.period == period]
         f, excess = [fold.frequency_hz for fold in curve], sheared([fold.excess for fold in curve])
@@ -179,10 +170,8 @@ def draw_scan(
             mine = [k for k, row in enumerate(rows) if (row.model, row.direction) == (name, way)]
             excess, points = np.array([rows[k].excess for k in mine]), np.array([strobes[k] for k in mine])
             settled = np.array([rows[k].period > 0 for k in mine])
-            plotting.strobe_points(upper, 1e2 * excess, 1e3 * points, settled, look, f"{way}ward scan")
-        if any(row.model == name and not row.period for row in rows):
-            pale: plotting.Style = {"color": plotting.tint(plotting.DOWN[0], plotting.PALE), "mfc": "none"}
-            upper.plot([], [], "o", markersize=2.6, **pale, label="pale: not periodic")
+            words = f"{way}ward scan", "pale: not periodic"
+            plotting.strobe_points(upper, 1e2 * excess, 1e3 * points, settled, look, *words)
         for kind, (marker, colour) in LOOKS.items():
             alike = [(1e2 * r.excess, r.lyapunov_map) for r in rows if (r.model, r.kind) == (name, kind)]
             mark: plotting.Style = {"markersize": 3.4, "mfc": "none", "markeredgecolor": colour}

@@ -121,10 +121,8 @@ def energy_loss(scene: Scene, run: Run) -> Mapping[str, object]:
     shares = ", ".join(f"{100 * part:.0f} % at τ = {t:g}" for t, part in at.items())
     own = 100.0 * float(np.interp(scene.single_mode.restitution, tau, below))
     if holds and own > 0.0:
-        run.finding(
-            "The map has its secondary bifurcations above grazing; Eq. (1) with this spring's restitution has "
-            f"them below grazing at {own:.0f} % of the frequencies."
-        )
+        words = "Secondary bifurcations lie above grazing in the map; in Eq. (1) they lie below it"
+        run.finding(f"{words} at {own:.0f} % of the frequencies.")
     run.verdict(
         "secondary",
         "agrees" if holds else "differs",
@@ -155,10 +153,8 @@ def universality(scene: Scene, run: Run, *, positions: int) -> Mapping[str, obje
     holds = all(row.closer in (row.map, row.also) for row in odd)
     if top and not failed:
         share = written(100.0 * (1.0 - len(odd) / len(top)), 3)
-        run.finding(
-            "Where the hysteresis is small, the map gives the period just above grazing for "
-            f"{share} % of the springs and frequencies."
-        )
+        words = "Where the hysteresis is small, the map gives the period just above grazing for"
+        run.finding(f"{words} {share} % of the springs and frequencies.")
         note = "over whole bands, where secondary bifurcations come first, "
         note += f"{100 * min(agree.values()):.0f} % or more"
         if odd:
@@ -190,8 +186,8 @@ def born_everywhere(scene: Scene, run: Run, count: int) -> list[Born]:
                 spring=job.spring,
                 f_times_t=job.f_times_t,
                 period=period,
-                map=([*maximal_periods(nordmark), 0])[0],
-                also=maximal_periods(nordmark)[1] if len(maximal_periods(nordmark)) > 1 else None,
+                map=maximal_period(nordmark),
+                also=maximal_period(nordmark) + 1 if len(maximal_periods(nordmark)) > 1 else None,
                 next_to_edge=part >= TOP,
             )
         )
