@@ -50,8 +50,8 @@ NONE, FAILED = "0.33", "red"
 LEAST_WIDTH = 0.04
 """Part of a panel's sides that a region must have in any direction to be given its number."""
 
-EDGE = 0.0006
-"""Distance of the marks for band edges from grazing, where they hold [excess]."""
+EDGE, MARKED = 0.0006, 10
+"""Distance of the marks for band edges from grazing, where they hold [excess]; largest m of a mark."""
 
 TICKS = (-0.1, -0.03, -0.01, -0.003, 0.0, 0.003, 0.01, 0.03, 0.1)
 
@@ -132,10 +132,12 @@ def _draw_theory(axis: Axes, edges: Sequence[Band], folds: Sequence[Fold]) -> No
     """Grazing, the band edges there, and the folds."""
     axis.axhline(0.0, color="0.5", linewidth=0.6, label="grazing")
     for name, place, marker in (("upper", EDGE, "v"), ("lower", -EDGE, "^")):
-        places = [getattr(band, name) for band in edges if band.period <= len(PERIODS) - 2]
+        places = [getattr(band, name) for band in edges if band.period <= MARKED]
         look: plotting.Style = {"color": "black", "markeredgecolor": "white", "linestyle": "none"}
         height = np.full(len(places), sheared(place))
-        axis.plot(places, height, marker=marker, markersize=4, **look, label=f"{name} band edge, map")
+        axis.plot(
+            places, height, marker=marker, markersize=4, **look, label=f"{name} band edge, map (m ≤ {MARKED})"
+        )
     for period in sorted({fold.period for fold in folds}):
         curve = [fold for fold in folds if fold.period == period]
         f, excess = [fold.frequency_hz for fold in curve], sheared([fold.excess for fold in curve])
@@ -183,8 +185,8 @@ def draw_scan(
         plotting.panel(upper, column, f"{TITLES[name]}, {frequency:.2f} Hz")
         plotting.panel(lower, column + 2, f"{TITLES[name]}, largest Lyapunov exponent")
         plotting.label(lower.xaxis, plotting.EXCESS, "%")
-    plotting.label(axes[0, 0].yaxis, quantity, "mrad" if quantity == "rotation" else "mm")
-    plotting.label(axes[1, 0].yaxis, "exponent", "1 / drive period")
+    plotting.label(axes[0, 0].yaxis, "read-out", "mrad" if quantity == "rotation" else "mm")
+    plotting.label(axes[1, 0].yaxis, "per drive period")
     plotting.legend_below(figure, axes.flat, 4, markerscale=1.5)
     return figure
 

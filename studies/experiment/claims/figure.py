@@ -42,12 +42,12 @@ def draw_loss(
     axes[0, 1].sharey(axes[0, 0])
     if any(not row.admissible for row in rows):
         at: plotting.Style = {"transform": axes[0, 1].transAxes, "fontsize": plotting.NOTE, "ha": "right"}
-        axes[0, 1].text(0.99, 0.02, "a curve ends where p$_m$ gets a second impact", **at)
+        axes[0, 1].text(0.99, 0.02, "a curve ends at a second impact", **at)
     for axis in axes[0]:
         axis.set_yscale("log")
-        plotting.label(axis.yaxis, plotting.HYSTERESIS, "%")
+        plotting.label(axis.yaxis, "$1 - F_m/F_g$", "%")
     plotting.label(axes[1, 0].yaxis, plotting.EXCESS, "%")
-    plotting.label(axes[1, 1].yaxis, "share of the frequencies", "%")
+    plotting.label(axes[1, 1].yaxis, "frequencies", "%")
     for place, (axis, title) in enumerate(
         zip(axes.flat, (*panels, "Eq. (1): share below grazing"), strict=True)
     ):

@@ -113,7 +113,11 @@ def draw_branch(rows: Sequence[OnBranch], frequency: float, m: int) -> Figure:
         if row.event:
             last = excess[place] > 0.5 * excess.max()
             at: plotting.Style = {"textcoords": "offset points", "fontsize": NOTE}
-            at |= {"xytext": (-5.0, -10.0), "ha": "right"} if last else {"xytext": (6.0, -3.0)}
+            at |= (
+                {"xytext": (-5.0, -10.0), "ha": "right"}
+                if last
+                else {"xytext": (6.0, -8.0 if row.event == "grazing" else -2.0)}
+            )
             axis.plot(excess[place], speed[place], "o", color=BLACK, markersize=3.5)
             axis.annotate(EVENTS.get(row.event, row.event), (excess[place], speed[place]), **at)
     axis.set_yscale("log")
