@@ -101,7 +101,7 @@ def up_and_down(strobed: Strobed, excesses: NDArray[np.float64], **settings: Any
     return {"up": up, "down": orbit_diagram(strobed, excesses[::-1], up.end, **settings)}
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class StrobePoint:
     """A strobed point of a scan: one period of a settled motion, all that was recorded of another."""
 
@@ -110,31 +110,20 @@ class StrobePoint:
     direction: Annotated[str, "direction of the scan"]
     amplitude: Annotated[float, "drive amplitude [m]"]
     excess: float
-    period: Annotated[int, "period m; 0 where the motion did not settle"]
+    period: int
     strobe: Annotated[int, "number of the strobe"]
     value: Annotated[float, "strobed read-out; m, or rad for a rotation, or for the map its x, a pure number"]
 
 
-def strobe_points_of(
-    frequency: float, description: str, grazing: float, ways: Mapping[str, Diagram]
-) -> list[StrobePoint]:
-    """The points of scans by their directions; `grazing` is the grazing amplitude [m]."""
+def strobe_points_of(f: float, name: str, grazing: float, ways: Mapping[str, Diagram]) -> list[StrobePoint]:
+    """The points of scans by their directions at drive `f` [Hz]; `grazing` is the grazing amplitude [m]."""
     return [
-        StrobePoint(
-            frequency_hz=frequency,
-            description=description,
-            direction=way,
-            amplitude=grazing * (1.0 + excess),
-            excess=excess,
-            period=period,
-            strobe=number,
-            value=value,
-        )
+        StrobePoint(f, name, way, grazing * (1.0 + excess), excess, period, number, value)
         for way, scan in ways.items()
         for excess, period, points in zip(
-            scan.excess.tolist(), scan.period.tolist(), scan.points.tolist(), strict=True
+            scan.excess.tolist(), scan.period.tolist(), scan.points, strict=True
         )
-        for number, value in enumerate(points[: period or None])
+        for number, value in enumerate(points[: period or None].tolist())
     ]
 
 

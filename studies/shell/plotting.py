@@ -177,6 +177,7 @@ def strobe_points(
     settled: NDArray[np.bool_],
     look: tuple[str, str, float, int],
     words: str,
+    pale: str = "",
 ) -> None:
     """Strobe `points`, shape (n_amplitudes, n_strobes), of a scan: `UP` or `DOWN`; pale where not settled."""
     edge, face, size, order = look
@@ -192,7 +193,7 @@ def strobe_points(
             rasterized=True,
             markerfacecolor=face if face == "none" else tint(face, share),
             zorder=order * share,
-            label=words if share == 1.0 else f"_{words}",
+            label=words if share == 1.0 else pale if kept.any() else "",
         )
 
 
@@ -201,15 +202,12 @@ def branch(
 ) -> None:
     """A branch of orbits in its order: solid where `stable`, else dashed; dotted where not `admissible`."""
     looks = np.where(admissible, np.where(stable, 0, 1), 2)
-    styles = (
-        {"color": colour, "linestyle": "-", "linewidth": 1.4, "label": "stable"},
-        {"color": colour, "linestyle": "--", "linewidth": 1.0, "label": "unstable"},
-        {"color": tint(colour, 0.5), "linestyle": ":", "label": "not an orbit: would touch elsewhere too"},
-    )
+    words = "stable", "unstable", "no orbit: would touch elsewhere too"
     runs = np.split(np.arange(looks.size), np.flatnonzero(np.diff(looks)) + 1)
     for run in sorted(runs, key=lambda run: int(looks[run[0]])):  # in the order of the legend
-        shown = slice(run[0], run[-1] + 2)  # on to the next one, so that the line has no gap
-        axes.plot(sideways[shown], upwards[shown], **styles[looks[run[0]]])
+        k, shown = looks[run[0]], slice(run[0], run[-1] + 2)  # on to the next one: the line has no gap
+        style: Style = {"color": tint(colour, 0.5) if k == 2 else colour, "label": words[k]}
+        axes.plot(sideways[shown], upwards[shown], ("-", "--", ":")[k], **style)
 
 
 def tint(colour: str, share: float) -> str:

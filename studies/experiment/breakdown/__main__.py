@@ -127,9 +127,8 @@ def search(scene: Scene, run: Run) -> tuple[list[Cell], list[Spring]]:
     ]
     found = run.attempt(cell_of, springs, "cells of the search")
     cells = [cell for cell in found if cell is not None]
-    run.table(
-        "born_period", cells, "Period that begins at grazing, by what is not printed.", of=Cell, show=()
-    )
+    words = "Period that begins at grazing, by what is not printed."
+    run.table("born_period", cells, words, of=Cell, show=())
     with_6 = [one for one, cell in zip(springs, found, strict=True) if cell and cell.period == BORN_PERIOD]
     return cells, nearest_first(with_6, scene.tip.mass_kg)
 
@@ -149,18 +148,19 @@ def tell(run: Run, beam: Outcome, found: Outcome | None, own: Island) -> None:
     """The findings: what is born of the calibrated beam, and of the one found; the island of Eq. (1)."""
     born = word(beam.born_period) if beam.born_period else "no period"
     saw = f"; the letter saw p{BORN_PERIOD}" * run.letters
-    run.finding(
-        f"With the period and damping of Fig. 5 the calibrated beam has {born} just above grazing{saw}."
-    )
+    run.finding(f"With period and damping of Fig. 5 the calibrated beam has {born} just above grazing{saw}.")
     if found is not None:
         mass = written(1e3 * (found.tip_mass_kg or 0.0), 3)
         ends = ", and its downward scan ends on p3" if found.ends_on_p3 else ""
         run.finding(f"A beam with ball and mount of {mass} g has p{BORN_PERIOD} just above grazing{ends}.")
     if own.end > own.fold_p3:
-        run.finding(
-            "Below grazing Eq. (1) has p3 and chaos that are not connected with grazing; they end at an "
-            f"excess of {written(own.end, 2)}."
-        )
+        words = "Below grazing Eq. (1) has p3 and chaos, not connected with grazing, up to an excess of"
+        run.finding(f"{words} {written(own.end, 2)}.")
+
+
+def on_p3(outcome: Outcome) -> str:
+    """The part of the downward scan on p3."""
+    return f"{written(outcome.p3_first or 0.0)} to {written(outcome.p3_last or 0.0)}"
 
 
 def judge(
@@ -175,12 +175,9 @@ def judge(
     note = "no cell of the search has it"
     if found is not None:
         said += f", {word(found.born_period)} in the search"
-        note = (
-            f"the calibrated ball of {1e3 * (beam.tip_mass_kg or 0.0):.2f} g does not; one of "
-            f"{1e3 * (found.tip_mass_kg or 0.0):.2f} g "
-            + f"with {found.higher_damping:g} times the damping of the higher modes "
-            * (found.higher_damping != 1.0)
-            + "does, and the letter does not print it"
+        note = f"the calibrated ball of {1e3 * (beam.tip_mass_kg or 0.0):.2f} g does not; one of "
+        note += (
+            f"{1e3 * (found.tip_mass_kg or 0.0):.2f} g, higher modes damped × {found.higher_damping:g}, does"
         )
     agrees, in_part = (one is not None and one.born_period == BORN_PERIOD for one in (beam, found))
     run.verdict(
@@ -194,20 +191,16 @@ def judge(
     run.verdict(
         "breakdown_p3",
         "differs" if ends is None else "agrees" if ends is beam else "in part",
-        found="beam: not so"
-        if ends is None
-        else f"beam: p3 from an excess of {written(ends.p3_first or 0.0)} to {written(ends.p3_last or 0.0)}",
+        found=f"beam: {'not so' if ends is None else on_p3(ends)}",
         note="no downward scan ends in p3" if ends is None else "" if ends is beam else note,
     )
+    spans = [f"{written(i.fold_p3, 3)} to {written(i.end, 3)} at τ = {i.restitution:g}" for i in islands]
     alive = [entry.restitution for entry in islands if entry.end >= CHAOS_AT]
     printed = any(abs(tau - letter.RESTITUTION) < 1e-9 for tau in alive)
     needs = f"the island is there; at the quoted place it needs τ of {max(alive, default=0.0):g} or less"
     run.verdict(
         "island",
         "agrees" if printed else "in part" if alive else "differs",
-        found="Eq. (1): "
-        + "; ".join(
-            f"{written(i.fold_p3, 3)} to {written(i.end, 3)} at τ = {i.restitution:g}" for i in islands
-        ),
+        found=f"Eq. (1): {'; '.join(spans)}",
         note=f"{needs}, read as an excess" if alive else "no island reaches the quoted place",
     )

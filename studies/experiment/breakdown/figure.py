@@ -43,24 +43,15 @@ def draw_scans(
     panels: Sequence[tuple[Outcome, Mapping[str, Diagram]]], tau: float, *, letters: bool
 ) -> Figure:
     """The scans below one another: steps below grazing on the left, the finer ones above it on the right."""
-    figure, axes = plotting.new_figure(
-        len(panels),
-        2,
-        width=PAGE,
-        height=0.052 * len(panels) + 0.014,
-        squeeze=False,
-        sharey="row",
-        width_ratios=[1.4, 1.0],
-    )
+    looks: plotting.Style = {"width": PAGE, "squeeze": False, "sharey": "row", "width_ratios": [1.4, 1.0]}
+    figure, axes = plotting.new_figure(len(panels), 2, height=0.052 * len(panels) + 0.014, **looks)
     for number, (pair, (outcome, ways)) in enumerate(zip(axes, panels, strict=True)):
         for axis in pair:
             for way, diagram in ways.items():
                 look, words = LOOKS[way]
-                if way != "island" and axis is pair[0] and not np.all(periods(diagram)):
-                    pale: plotting.Style = {"color": plotting.tint(look[0], plotting.PALE), "markersize": 2.0}
-                    axis.plot([], [], "o", **pale, label="pale: not settled")
                 settled = (periods(diagram) > 0) | (way == "island")
-                plotting.strobe_points(axis, 1e2 * diagram.excess, 1e3 * diagram.points, settled, look, words)
+                named, x = (look, words, "pale: not settled"), 1e2 * diagram.excess
+                plotting.strobe_points(axis, x, 1e3 * diagram.points, settled, *named)
             axis.axvline(0.0, **GUIDE, label="grazing")
         pair[0].set_xlim(1e2 * min(float(d.excess.min()) for d in ways.values()) - 0.3, 0.02)
         pair[1].set_xlim(-0.03, 1e2 * HIGHEST + 0.03)
@@ -68,12 +59,12 @@ def draw_scans(
         begins = f"p$_{{{outcome.born_period}}}$ begins" if outcome.born_period else "no period begins"
         seen = f" (letter: p$_{{{BORN_PERIOD}}}$)" if letters and outcome.tip_mass_kg else ""
         pair[1].set_title(f"{begins}{seen}", loc="right")
-        plotting.label(pair[0].yaxis, "tip displacement" if number == 0 else "read-out", "mm")
+        plotting.label(pair[0].yaxis, "tip" if number == 0 else "read-out", "mm")
         if outcome.fold_p3 is not None:
             line: plotting.Style = {"color": GREEN, "linestyle": "-.", "linewidth": 0.9, "zorder": 0}
             pair[0].axvline(1e2 * outcome.fold_p3, **line, label="fold of p$_3$")
     if letters:
-        plotting.mark_letter(axes[0, 0].xaxis, 1e2 * CHAOS_AT, words="letter: chaos\nof Eq. (1)", along=0.98)
+        plotting.mark_letter(axes[0, 0].xaxis, 1e2 * CHAOS_AT, words="letter: chaos of Eq. (1)", along=0.98)
     plotting.label(axes[-1, 0].xaxis, EXCESS, "%")
     plotting.label(axes[-1, 1].xaxis, f"the same above grazing, {EXCESS}", "%")
     plotting.legend_below(figure, axes[:, 0], 3, markerscale=2.0)
@@ -86,23 +77,17 @@ def draw_born(cells: Sequence[Cell], mass: float, found: Outcome | None, *, lett
     masses = sorted({cell.tip_mass_kg for cell in cells})
     factors = sorted({cell.higher_damping for cell in cells})
     figure, axis = plotting.new_figure(height=0.040 + 0.0055 * len(masses))
-    looks = {
-        3: (SKY, "p$_3$"),
-        BORN_PERIOD: (ORANGE, f"p$_{{{BORN_PERIOD}}}$" + ", as in the letter" * letters),
-    }
-    looks[0] = "0.87", "no period up to 64"
+    looks = {0: ("0.87", "no period up to 64"), 3: (SKY, "p$_3$")}
+    looks[int(BORN_PERIOD)] = ORANGE, f"p$_{{{BORN_PERIOD}}}$" + ", as in the letter" * letters
+    framed = None if found is None else (found.tip_mass_kg, found.higher_damping)
     for cell in sorted(cells, key=lambda cell: cell.period):
-        corner = factors.index(cell.higher_damping) - 0.46, masses.index(cell.tip_mass_kg) - 0.44
+        x, y = factors.index(cell.higher_damping), masses.index(cell.tip_mass_kg)
         colour, words = looks.get(cell.period, (tint(GREEN, 0.2), "another period"))
-        axis.add_patch(Rectangle(corner, 0.92, 0.88, facecolor=colour, edgecolor="none", label=words))
-        place = corner[0] + 0.46, corner[1] + 0.42
-        axis.text(*place, str(cell.period or "–"), ha="center", va="center", fontsize=NOTE)
-        if found is not None and (cell.tip_mass_kg, cell.higher_damping) == (
-            found.tip_mass_kg,
-            found.higher_damping,
-        ):
-            frame: plotting.Style = {"facecolor": "none", "edgecolor": "black", "linewidth": 1.2, "zorder": 3}
-            axis.add_patch(Rectangle(corner, 0.92, 0.88, **frame, label="its scans are drawn"))
+        axis.add_patch(Rectangle((x - 0.46, y - 0.44), 0.92, 0.88, facecolor=colour, label=words))
+        axis.text(x, y, str(cell.period or "–"), ha="center", va="center", fontsize=NOTE)
+        if framed == (cell.tip_mass_kg, cell.higher_damping):
+            frame: plotting.Style = {"fill": False, "linewidth": 1.2, "label": "framed: its scans are drawn"}
+            axis.add_patch(Rectangle((x - 0.46, y - 0.44), 0.92, 0.88, **frame))
     if masses[0] <= mass <= masses[-1] and 1.0 in factors:
         own = factors.index(1.0) - 0.3, float(np.interp(mass, masses, np.arange(len(masses))))
         axis.plot(*own, "D", color="black", markersize=3.5, label=f"calibrated beam, {1e3 * mass:.2f} g")

@@ -50,6 +50,7 @@ from studies.experiment.chart.model import (
     side_by_side,
 )
 from studies.physics.descriptions import TITLES, strobed_at
+from studies.shell.columns import written
 from studies.shell.options import HERTZ, MOST_CELLS, Within
 from studies.shell.scene import (
     Scene,
@@ -146,12 +147,18 @@ def drawn(
         folds = folds_of_single_mode(oscillator, frequencies, lowest)
     else:
         folds = folds_of_beam(oscillator, edges, frequencies, lowest)
-    run.arrays(f"chart_{model}", frequency_hz=frequencies, excess=excesses, **cells)
+    holds = (
+        "Period (0: none), impacts in a period and drive periods spent (-1: failed) by scan (upward first), "
+    )
+    holds += "drive frequency [Hz] and excess [1]."
+    run.arrays(f"chart_{model}", holds, frequency_hz=frequencies, excess=excesses, **cells)
     run.table(f"folds_{model}", folds, "Exact folds of p_m orbits with one impact.", of=Fold, show=())
-    title = f"{TITLES[model]}, {plane.columns} × {plane.rows}"
-    run.figure(f"chart_{model}", draw(plane, cells, edges, folds, title), CAPTION)
+    run.figure(f"chart_{model}", draw(plane, cells, edges, folds, TITLES[model]), CAPTION)
     without = float(np.mean(cells["period"] == 0))
     run.say(f"{100 * without:.1f} % of the cells without a period up to {LARGEST_PERIOD}")
+    if without > 0.0:
+        name = "beam" if model == "beam" else "motion of Eq. (1)"
+        run.finding(f"In {written(100.0 * without, 3)} % of the plane the {name} settles on no short period.")
     return {"share_without_period": without, "folds": len(folds)}
 
 
@@ -169,17 +176,26 @@ def cut(scene: Scene, run: Run, f: float) -> Mapping[str, object]:
         rows, strobes = rows + scan, strobes + recorded
         for reason in failures:
             run.failed("scan", reason)
-    run.table("cut", rows, "Settled motions; kind by the largest Lyapunov exponent.", of=settled.Settlement)
-    run.arrays("cut", points=np.array(strobes), excess=[row.excess for row in rows])
+    words = "Motions that settled at one drive frequency, told apart by the largest Lyapunov exponent."
+    run.table("cut", rows, words, of=settled.Settlement)
+    holds = "Strobed points [m, or rad for a rotation] at each excess [1], row by row as in cut.csv."
+    run.arrays("cut", holds, points=np.array(strobes), excess=[row.excess for row in rows])
     run.figure("cut", figure.draw_scan(rows, strobes, f, scene.readout.quantity), figure.SCAN)
     wild = [row for row in rows if row.kind == settled.CHAOTIC]
     chaotic = {name: [row.excess for row in wild if row.model == name] for name in maps}
-    spans = [f"{TITLES[name]}: {min(at):.3g} to {max(at):.3g}" for name, at in chaotic.items() if at]
+    ends = {name: sorted({min(at), max(at)}) for name, at in chaotic.items() if at}
+    spans = [f"{TITLES[name]}: {' to '.join(written(e, 3) for e in at)}" for name, at in ends.items()]
+    if "beam" in ends and ends["beam"][0] > 0.0:
+        first = written(100.0 * ends["beam"][0], 2)
+        run.finding(
+            f"As the amplitude is raised through grazing, the beam is first chaotic {first} % above it."
+        )
     run.verdict(
         "chaos",
         "agrees" if spans else "differs",
         found="; ".join(spans) or "none",
         note=f"excess with a positive Lyapunov exponent at {f:.2f} Hz",
+        figure="cut",
     )
     kinds = Counter(f"{TITLES[row.model]}, {row.kind}" for row in rows)
     return {"cut_hz": f, "rows": rows, "kinds": kinds}
@@ -191,14 +207,21 @@ def basins(scene: Scene, run: Run, f: float, side: int) -> Mapping[str, object]:
 
     plane = settled.plane_of(scene, f, side)
     leads = np.array(run.map(plane.line, plane.velocity.tolist(), "rows of the basins"))
-    run.arrays("basins", x=plane.x, velocity=plane.velocity, leads=leads)
+    holds = "Starts, x [m] across and velocity [m/s] down, and the period of the orbit to which each leads "
+    holds += "(0: something else, -1: behind the stop)."
+    run.arrays("basins", holds, x=plane.x, velocity=plane.velocity, leads=leads)
     run.figure("basins", figure.draw_basins(plane, leads, f), figure.BASINS)
     period, shares = plane.period, settled.parts(leads, plane.period)
     both = period > 1 and shares[f"p{period}"] > 0.0  # p1 without impacts is stable below grazing
+    if both:
+        share = written(100.0 * shares[f"p{period}"], 3)
+        rest = ", and some to the motion without impacts" * (shares["p1 without impacts"] > 0.0)
+        run.finding(f"A little below grazing {share} % of the starts of Eq. (1) lead to p{period}{rest}.")
     run.verdict(
         "coexistence",
         "agrees" if both else "differs",
         found=f"Eq. (1): p1 and p{period}" if both else "Eq. (1): one of them alone",
-        note=f"at excess {settled.EXCESS:g} the start decides which of them is reached",
+        note=f"at excess {written(settled.EXCESS)} the start decides which of them is reached",
+        figure="basins",
     )
     return {"basins": {"excess": settled.EXCESS, "period": period, "parts": shares}}

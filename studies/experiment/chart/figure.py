@@ -1,7 +1,7 @@
 """The chart as a figure: upward scan left, downward scan right; period above, impacts in a period below.
 
 Colours are the seven of the house style, one after the other with the period, lighter for 8 to 14, so that
-neighbouring periods and period doublings always differ; every region of some size says its number as well.
+neighbouring periods and period doublings always differ; every region with room for it says its number.
 The upright axis is that of the grid (``model.sheared``).
 
 Figures of the settled motions: strobe points and exponents of a scan, and basins on the strobe plane.
@@ -16,6 +16,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap, to_hex, to_rgb
 from matplotlib.figure import Figure
+from matplotlib.patches import Patch
 from matplotlib.patheffects import withStroke
 from numpy.typing import NDArray
 from scipy import ndimage
@@ -30,33 +31,33 @@ from studies.experiment.chart.settled import (
     WITHOUT,
     Settlement,
     Starts,
-    parts,
 )
 from studies.physics.descriptions import TITLES
 from studies.shell import plotting
+from studies.shell.columns import written
 
 SEVEN = plotting.PALETTE[1:8]
-PERIODS = ["white", *SEVEN, *(plotting.tint(one, 0.45) for one in SEVEN), "0.66"]
+PERIODS = ["white", *SEVEN, *(plotting.tint(one, 0.45) for one in SEVEN), "#A0785A"]
 """Colours of no impact, of the periods 1 to 14, and of a longer one."""
 
 CLASSES = {1: "1", 2: "2", 3: "3", 4: "4\u20135", 6: "6\u20138", 9: "9 or more"}
 """Classes of impacts in a period: lower end and name."""
-CIVIDIS = matplotlib.colormaps["cividis"]
-IMPACTS = ["white", *map(to_hex, CIVIDIS(np.linspace(1.0, 0.0, len(CLASSES))))]
+VIRIDIS = matplotlib.colormaps["viridis"]
+IMPACTS = ["white", *map(to_hex, VIRIDIS(np.linspace(1.0, 0.1, len(CLASSES))))]
 
-NONE, FAILED = "0.33", "black"
+NONE, FAILED = "0.33", "red"
 
-LEAST_AREA = 0.004
-"""Part of a plotting.panel that a region must have to be given its number."""
+LEAST_WIDTH = 0.04
+"""Part of a panel's sides that a region must have in any direction to be given its number."""
 
-EDGE = 0.002
-"""Half the height of the marks for band edges, which hold at grazing [excess]."""
+EDGE, MARKED = 0.0006, 10
+"""Distance of the marks for band edges from grazing, where they hold [excess]; largest m of a mark."""
 
 TICKS = (-0.1, -0.03, -0.01, -0.003, 0.0, 0.003, 0.01, 0.03, 0.1)
 
 CAPTION = (
     "Period (above) and impacts in a period (below) over drive frequency and excess, in the upward scan "
-    "(left) and the downward scan (right); lines: exact folds and band edges of the map."
+    "(left) and the downward scan (right). The lines are exact folds, the ticks band edges of the map."
 )
 
 Integers = NDArray[np.int32]
@@ -64,7 +65,7 @@ Integers = NDArray[np.int32]
 
 @plotting.in_house_style
 def draw(
-    plane: Plane, cells: Mapping[str, Integers], edges: Sequence[Band], folds: Sequence[Fold], title: str
+    plane: Plane, cells: Mapping[str, Integers], edges: Sequence[Band], folds: Sequence[Fold], name: str
 ) -> Figure:
     """The figure."""
     figure, axes = plotting.new_figure(2, 2, width=plotting.PAGE, height=0.150, sharex=True, sharey=True)
@@ -83,20 +84,31 @@ def draw(
         hit = np.where((period > 0) & (impacts > 0), period, 0)
         _write_numbers(axes[0, k], hit, x, y, [f"p$_{{{m}}}$" for m in range(hit.max() + 1)])
         _write_numbers(axes[1, k], np.where(hit, classes, 0), x, y, names)
-        plotting.panel(axes[0, k], k, f"{way}: period")
-        plotting.panel(axes[1, k], 2 + k, f"{way}: impacts in a period")
+        plotting.panel(axes[0, k], k, f"{name}, {way}: period")
+        plotting.panel(axes[1, k], 2 + k, f"{name}, {way}: impacts")
         plotting.label(axes[1, k].xaxis, "drive frequency", "Hz")
     for axis in axes[:, 0]:
-        axis.set_yticks(sheared(TICKS), [f"{t:g}" for t in TICKS])
-        plotting.label(axis.yaxis, "excess F/F$_g$ − 1")
-    known = {"p$_1$ without impact": "white", "no period found": NONE, "failed": FAILED}
-    known |= {f"period {len(PERIODS) - 1} to 64": PERIODS[-1]}
-    known |= {f"impacts: {name}": colour for name, colour in zip(names[1:], IMPACTS[1:], strict=True)}
-    for name, colour in known.items():
-        axes[0, 0].fill([], [], facecolor=colour, edgecolor="0.3", linewidth=0.4, label=name)
-    plotting.legend_below(figure, axes.flat, 5)
-    figure.suptitle(title, fontsize=8)
+        axis.set_yticks(sheared(TICKS), [written(t) for t in TICKS])
+        plotting.label(axis.yaxis, plotting.EXCESS)
+    hit = (cells["impacts"] > 0) & (cells["period"] > 0)
+    seen = set(np.minimum(cells["period"][hit], len(PERIODS) - 1).tolist())
+    texts = {m: f"p$_{{{m}}}$" for m in range(len(PERIODS) - 1)} | {
+        len(PERIODS) - 1: f"{len(PERIODS) - 1} to 64"
+    }
+    failed = bool(np.any(cells["period"] < 0))
+    _key(axes[0, 1], "period", {texts[m]: PERIODS[m] for m in sorted(seen)}, failed)
+    seen = set(np.searchsorted(list(CLASSES), cells["impacts"][hit], side="right").tolist())
+    _key(axes[1, 1], "impacts", {names[k]: IMPACTS[k] for k in sorted(seen)}, failed)
+    plotting.legend_below(figure, axes.flat, 4)
     return figure
+
+
+def _key(axis: Axes, title: str, colours: Mapping[str, str], failed: bool) -> None:
+    """The colours of a row of panels, right of it; with what both rows have in common."""
+    known = {**colours, "no impact": "white", "no period": NONE, **({"failed": FAILED} if failed else {})}
+    marks = [Patch(facecolor=colour, edgecolor="0.3", linewidth=0.4) for colour in known.values()]
+    place: plotting.Style = {"loc": "center left", "bbox_to_anchor": (1.0, 0.5), "handlelength": 1.0}
+    axis.legend(marks, known.keys(), title=title, ncols=2 if len(marks) > 9 else 1, **place)
 
 
 def _write_numbers(
@@ -107,33 +119,37 @@ def _write_numbers(
     for value in np.unique(values[values > 0]):
         marks, _count = ndimage.label(values == value)
         sizes = np.bincount(marks.ravel())
-        for mark in 1 + np.flatnonzero(sizes[1:] >= LEAST_AREA * values.size):
-            depth = ndimage.distance_transform_edt(np.pad(marks == mark, 1))[1:-1, 1:-1]
+        for mark in 1 + np.flatnonzero(sizes[1:] >= LEAST_WIDTH**2 * values.size):
+            sides = [1.0 / count for count in values.shape]
+            depth = ndimage.distance_transform_edt(np.pad(marks == mark, 1), sampling=sides)[1:-1, 1:-1]
             i, j = np.unravel_index(int(np.argmax(depth)), depth.shape)
+            if depth[i, j] - 0.5 * min(sides) < 0.5 * LEAST_WIDTH:
+                continue
             axis.text(x[i], y[j], words[value], size=5.5, ha="center", va="center", path_effects=outline)
 
 
 def _draw_theory(axis: Axes, edges: Sequence[Band], folds: Sequence[Fold]) -> None:
     """Grazing, the band edges there, and the folds."""
-    axis.axhline(0.0, color="0.5", linewidth=0.4)
-    for name, style in (("upper", "-"), ("lower", (0, (1.5, 1.0)))):
-        places, told = [getattr(band, name) for band in edges], f"{name} band edge, map"
-        axis.vlines(places, *sheared([-EDGE, EDGE]), color="black", lw=0.7, ls=style, label=told)
+    axis.axhline(0.0, color="0.5", linewidth=0.6, label="grazing")
+    for name, place, marker in (("upper", EDGE, "v"), ("lower", -EDGE, "^")):
+        places = [getattr(band, name) for band in edges if band.period <= MARKED]
+        look: plotting.Style = {"color": "black", "markeredgecolor": "white", "linestyle": "none"}
+        height = np.full(len(places), sheared(place))
+        axis.plot(
+            places, height, marker=marker, markersize=4, **look, label=f"{name} band edge, map (m ≤ {MARKED})"
+        )
     for period in sorted({fold.period for fold in folds}):
         curve = [fold for fold in folds if fold.period == period]
         f, excess = [fold.frequency_hz for fold in curve], sheared([fold.excess for fold in curve])
         axis.plot(f, excess, color="white", linewidth=1.8)
-        axis.plot(f, excess, color=plotting.PALETTE[2], linewidth=0.9, label="exact fold of p$_m$")
+        axis.plot(f, excess, color="black", linewidth=0.9, label="exact fold of p$_m$")
 
 
 SCAN = (
-    "Strobe points and largest Lyapunov exponent against the excess, for Eq. (1) and the beam. Filled: "
-    "amplitude raised; open: lowered; pale: not periodic."
+    "Strobe points and largest Lyapunov exponent while the amplitude is raised and lowered, for Eq. (1) and "
+    "the beam; above zero the motion is chaotic."
 )
-BASINS = (
-    "Where starts on the strobe plane of Eq. (1) lead below grazing: the motion without impacts has a small "
-    "basin, p_m the rest."
-)
+BASINS = "Where starts on the strobe plane of Eq. (1) lead below grazing: to p_m, or to no impacts at all."
 LOOKS = {
     WITHOUT: ("v", plotting.SKY),
     PERIODIC: ("o", plotting.BLUE),
@@ -156,20 +172,22 @@ def draw_scan(
             mine = [k for k, row in enumerate(rows) if (row.model, row.direction) == (name, way)]
             excess, points = np.array([rows[k].excess for k in mine]), np.array([strobes[k] for k in mine])
             settled = np.array([rows[k].period > 0 for k in mine])
-            plotting.strobe_points(upper, 1e2 * excess, 1e3 * points, settled, look, f"{way}ward scan")
+            words = f"{way}ward scan", "pale: not periodic"
+            plotting.strobe_points(upper, 1e2 * excess, 1e3 * points, settled, look, *words)
         for kind, (marker, colour) in LOOKS.items():
             alike = [(1e2 * r.excess, r.lyapunov_map) for r in rows if (r.model, r.kind) == (name, kind)]
             mark: plotting.Style = {"markersize": 3.4, "mfc": "none", "markeredgecolor": colour}
-            lower.plot(*np.array(alike).reshape(-1, 2).T, marker, **mark, label=kind)
-        lower.axhline(0.0, **plotting.GUIDE)
+            if alike:
+                lower.plot(*np.array(alike).T, marker, **mark, label=kind)
+        lower.axhline(0.0, color="0.6", linewidth=0.6, zorder=0)
         for axis in (upper, lower):
-            axis.axvline(0.0, **plotting.GUIDE)
+            axis.axvline(0.0, **plotting.GUIDE, label="grazing")
         plotting.panel(upper, column, f"{TITLES[name]}, {frequency:.2f} Hz")
-        plotting.panel(lower, column + 2)
+        plotting.panel(lower, column + 2, f"{TITLES[name]}, largest Lyapunov exponent")
         plotting.label(lower.xaxis, plotting.EXCESS, "%")
-    plotting.label(axes[0, 0].yaxis, quantity, "mrad" if quantity == "rotation" else "mm")
-    plotting.label(axes[1, 0].yaxis, "exponent per drive period")
-    plotting.legend_below(figure, axes.flat, 3, markerscale=1.5)
+    plotting.label(axes[0, 0].yaxis, "read-out", "mrad" if quantity == "rotation" else "mm")
+    plotting.label(axes[1, 0].yaxis, "per drive period")
+    plotting.legend_below(figure, axes.flat, 4, markerscale=1.5)
     return figure
 
 
@@ -189,16 +207,15 @@ def draw_basins(plane: Starts, leads: np.ndarray, frequency: float) -> Figure:
         picture[leads == code] = place
     colours = ListedColormap([colour for colour, _ in looks.values()])
     axis.pcolormesh(x, y, picture, vmin=-0.5, vmax=len(looks) - 0.5, cmap=colours, rasterized=True)
-    for code in plane.orbits:
+    for code in sorted(plane.orbits):
         colour = plotting.VERMILION if code == 1 else "white"
         look = {"color": colour, "markeredgecolor": "black", "markersize": 4}
         strobes = (plane.strobes(code) / (gap, speed)).T
-        axis.plot(*strobes, "D" if code == 1 else "o", **look, label=f"p$_{{{code}}}$")
-    for colour, words in looks.values():
-        axis.fill([], [], facecolor=colour, edgecolor="0.4", label=words)
-    share = 100 * parts(leads, m)["p1 without impacts"]
-    title = f"Eq. (1), {frequency:.2f} Hz, $F/F_g - 1$ = {oscillator.excess:g}"
-    axis.set_title(f"{title}\n{share:.1f} % lead to p$_1$")
+        axis.plot(*strobes, "D" if code == 1 else "o", **look, label=f"strobes of p$_{{{code}}}$")
+    for code, (colour, words) in sorted(looks.items(), key=lambda pair: (pair[0] == 0, pair[0])):
+        if np.any(leads == code):
+            axis.fill([], [], facecolor=colour, edgecolor="0.4", label=words)
+    axis.set_title(f"Eq. (1), {frequency:.2f} Hz, excess {written(oscillator.excess)}", loc="left")
     plotting.label(axis.xaxis, "$ξ$ / gap at the strobe")
     plotting.label(axis.yaxis, "$\\dot{ξ}$ / (2π f gap) at the strobe")
     plotting.legend_below(figure, [axis], 2)

@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -40,17 +40,16 @@ NOT_SETTLED, UNDECIDED = "not settled", "undecided"
 
 @dataclass(frozen=True, kw_only=True)
 class Settlement:
-    """The settled motion at one amplitude: `period` in drive periods, 0 for none; `impacts` in one such
-    period; `lyapunov_map` per drive period with its standard error."""
+    """The settled motion at one amplitude."""
 
-    model: str
-    direction: str
+    model: Annotated[str, "description"]
+    direction: Annotated[str, "direction of the scan"]
     excess: float
-    kind: str
+    kind: Annotated[str, "kind of motion"]
     period: int
-    impacts: int
-    lyapunov_map: float
-    error_map: float
+    impacts: Annotated[int, "impacts in a period"]
+    lyapunov_map: Annotated[float, "largest Lyapunov exponent per drive period"]
+    error_map: Annotated[float, "standard error of the exponent"]
 
 
 def kind_of(strobed: StroboscopicMap, settled: Settled[State], cycles: int) -> tuple[str, Exponents]:

@@ -44,6 +44,7 @@ from studies.experiment.claims.model import (
 )
 from studies.physics.descriptions import falls
 from studies.physics.least_model import at_letters_drives
+from studies.shell.columns import written
 from studies.shell.scene import Scene, band_of, corresponding, harmonic, nordmark_at
 from studies.shell.study import Run, study
 
@@ -95,29 +96,38 @@ def energy_loss(scene: Scene, run: Run) -> Mapping[str, object]:
     tau = np.linspace(0.0, 0.9, restitutions)
     plane = run.map(partial(below_grazing, scene, frequencies.tolist()), tau.tolist(), "rows of the plane")
     below = np.array([part for part, _ in plane])
-    run.table("loss", rows, "Fold and first bifurcation of p_m, F/F_g - 1.", of=Node, show=())
-    run.figure("loss", figure.draw_loss(rows, tau, below), figure.LOSS)
+    run.table("loss", rows, "Fold and first bifurcation of p_m, by restitution.", of=Node, show=())
+    run.figure("loss", figure.draw_loss(rows, tau, below, letters=run.letters), figure.LOSS)
     found = trends(rows)
     both = found["map"] and found["eq1"]
-    parts = ", ".join(f"{name} {'yes' if good else 'no'}" for name, good in found.items())
-    note = "" if found["rho"] else "the hysteresis in F falls; |rho_m| rises, for rho per F falls faster"
+    names = {"map": "hysteresis of the map", "eq1": "of Eq. (1)", "rho": "|ρ_m| of the map"}
+    falling, other = (" and ".join(names[n] for n in found if found[n] is good) for good in (True, False))
+    but = "" if both else ", but not at every frequency"
+    run.finding(
+        f"The more energy an impact takes, the narrower is the hysteresis of the map and of Eq. (1){but}."
+    )
+    note = "" if found["rho"] else "the hysteresis in F falls; |ρ_m| rises, because ρ per F falls faster"
     run.verdict(
         "loss",
         "differs" if not both else "agrees" if found["rho"] else "in part",
-        found=f"falls with the loss: {parts}",
+        found=f"falls with the loss: {falling or 'none'}" + f"; not so: {other}" * bool(other),
         note=note,
     )
     lowest = float(np.nanmin([end for _, end in plane]))
     simple = [row for row in rows if row.admissible]
-    falling = [f for f in drives if falls([row.secondary for row in simple if row.frequency_hz == f])]
+    lower = [f for f in drives if falls([row.secondary for row in simple if row.frequency_hz == f])]
     holds = bool(lowest > 0.0 and below[0] < below[-1] and np.all(np.diff(below) >= -SLACK))
     at = {t: float(np.interp(t, tau, below)) for t in (0.0, letter.RESTITUTION, 0.9)}
-    shares = ", ".join(f"{100 * part:.0f} % at tau = {t:g}" for t, part in at.items())
+    shares = ", ".join(f"{100 * part:.0f} % at τ = {t:g}" for t, part in at.items())
+    own = 100.0 * float(np.interp(scene.single_mode.restitution, tau, below))
+    if holds and own > 0.0:
+        words = "Secondary bifurcations lie above grazing in the map; in Eq. (1) they lie below it"
+        run.finding(f"{words} at {own:.0f} % of the frequencies.")
     run.verdict(
         "secondary",
         "agrees" if holds else "differs",
-        found=f"map: never below excess {lowest:.2g}; Eq. (1): below grazing in {shares}",
-        note=f"at one frequency its excess falls throughout as tau grows at {len(falling)} of {len(drives)}",
+        found=f"map: never below excess {written(lowest, 2)}; Eq. (1): below grazing in {shares}",
+        note=f"at one frequency its excess falls throughout as τ grows at {len(lower)} of {len(drives)}",
     )
     return {"rows": rows, "falls": found, "restitution": tau, "part_below_grazing": below}
 
@@ -131,7 +141,8 @@ def universality(scene: Scene, run: Run, *, positions: int) -> Mapping[str, obje
     period counts as disagreement.
     """
     rows, excess = born_everywhere(scene, run, positions), scene.scan.born_excess
-    run.table("universality", rows, "Born period, and that of the map as rho -> 0+.", of=Born, show=())
+    words = "Periods that begin at grazing on several springs, and in the map."
+    run.table("universality", rows, words, of=Born, show=())
     failed = any(row.period is None for row in rows)
     agree = {
         name: float(np.mean([row.agrees for row in rows if row.spring == name]))
@@ -139,8 +150,11 @@ def universality(scene: Scene, run: Run, *, positions: int) -> Mapping[str, obje
     }
     top = [row for row in rows if row.next_to_edge]
     odd = [row for row in top if not row.agrees]
-    holds = all(row.closer in row.map for row in odd)
+    holds = all(row.closer in (row.map, row.also) for row in odd)
     if top and not failed:
+        share = written(100.0 * (1.0 - len(odd) / len(top)), 3)
+        words = "Where the hysteresis is small, the map gives the period just above grazing for"
+        run.finding(f"{words} {share} % of the springs and frequencies.")
         note = "over whole bands, where secondary bifurcations come first, "
         note += f"{100 * min(agree.values()):.0f} % or more"
         if odd:
@@ -172,7 +186,8 @@ def born_everywhere(scene: Scene, run: Run, count: int) -> list[Born]:
                 spring=job.spring,
                 f_times_t=job.f_times_t,
                 period=period,
-                map=maximal_periods(nordmark),
+                map=maximal_period(nordmark),
+                also=maximal_period(nordmark) + 1 if len(maximal_periods(nordmark)) > 1 else None,
                 next_to_edge=part >= TOP,
             )
         )
@@ -201,7 +216,7 @@ def period_adding(run: Run) -> Mapping[str, object]:
         "period_adding",
         "agrees" if there == list(ADDED) else "differs",
         found=f"overdamped map with eigenvalue {EIGENVALUE:g}: {len(there)} of {len(ADDED)} periods, from "
-        f"{ADDED[0]} to {ADDED[-1]}, each in its own window of rho",
-        note=f"the period rises by one where rho falls by the factor {EIGENVALUE:g}^2, without end",
+        f"{ADDED[0]} to {ADDED[-1]}, each in its own window of ρ",
+        note=f"the period rises by one where ρ falls by the factor {EIGENVALUE:g}², without end",
     )
     return {"periods": there, "rho": list(places.values())}

@@ -16,7 +16,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 from scipy.optimize import bisect
@@ -44,21 +44,17 @@ MOST_CYCLES = 3000
 
 @dataclass(frozen=True, kw_only=True)
 class Node:
-    """The node p_m at one frequency and restitution, by the map and by Eq. (1); NaN where there is no fold.
-
-    `fold`, `secondary`: F/F_g - 1 at its fold and at its first bifurcation (infinite: none); `rho`: rho_m;
-    `admissible`: one impact at the fold of Eq. (1), otherwise the node is not there and has no `secondary`.
-    """
+    """The node p_m at one frequency and restitution, by the map and by Eq. (1); NaN without a fold."""
 
     frequency_hz: float
     period: int
     restitution: float
-    rho: float
-    fold_of_map: float
-    secondary_of_map: float
-    fold: float
-    secondary: float
-    admissible: bool
+    rho: Annotated[float, "ρ_m of the map"]
+    fold_of_map: Annotated[float, "fold of the map, F/F_g − 1"]
+    secondary_of_map: Annotated[float, "first bifurcation of the map, F/F_g − 1; none where there is none"]
+    fold: Annotated[float, "fold of Eq. (1), F/F_g − 1"]
+    secondary: Annotated[float, "first bifurcation of Eq. (1), F/F_g − 1; none where there is none"]
+    admissible: Annotated[bool, "one impact at the fold of Eq. (1)"]
 
 
 def has_one_impact(orbit: Orbit) -> bool:
@@ -142,23 +138,22 @@ def trends(rows: Sequence[Node]) -> dict[str, bool]:
 
 @dataclass(frozen=True, kw_only=True)
 class Born:
-    """One spring at one f T: `period` born (0: not settled; None: could not be followed).
-
-    `map`: periods that the map has there as rho -> 0+; `next_to_edge`: in the upper quarter of the band;
-    `closer`: period at a sixteenth of the excess, where it was asked.
-    """
+    """The period that one spring is born with at one f T; None where it could not be followed."""
 
     spring: str
-    f_times_t: float
-    period: int | None
-    map: tuple[int, ...]
-    next_to_edge: bool
-    closer: int | None = None
+    f_times_t: Annotated[float, "f T"]
+    period: Annotated[int | None, "born period; 0 where the motion did not settle"]
+    map: Annotated[int, "period of the map as ρ goes to 0; 0 for none"]
+    also: Annotated[int | None, "second period of the map, where bands overlap"]
+    next_to_edge: Annotated[bool, "in the upper quarter of the band"]
+    closer: Annotated[int | None, "born period at a sixteenth of the excess; where the first disagrees"] = (
+        None
+    )
 
     @property
     def agrees(self) -> bool:
         """Whether the map has this period."""
-        return self.period in self.map
+        return self.period is not None and self.period in (self.map, self.also)
 
 
 class Job(NamedTuple):

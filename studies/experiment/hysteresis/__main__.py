@@ -18,8 +18,7 @@ that chain differ in one thing, so that the beam's hysteresis over the map's is 
     F_beam/F_map = truncation of the map * size of the kick * its change with velocity * delay
                    * higher modes in the flight * ringing met by the next collision
 
-Statistics are of folds below the letter's amplitude stability, 2.5e-4: next to a band edge hysteresis
-vanishes, and its ratios say nothing.
+Statistics are of folds deeper than the letter's amplitude stability, 2.5e-4.
 
 The bands are those of the map; across each of them the hysteresis of map and Eq. (1) has a closed form.
 
@@ -125,12 +124,9 @@ def hysteresis(
     kept = resolved(rows)
     causes = [causes_over([row], f"{row.frequency_hz:.2f} Hz, p{row.m}") for row in at_letter]
     causes.append(causes_over(kept, f"median of {len(kept)} folds"))
-    run.table(
-        "causes", causes, "Factor of each cause in the hysteresis, from the map to the beam.", of=Causes
-    )
+    run.table("causes", causes, "Factor of each cause, from the map to the beam.", of=Causes)
     off = [accuracy(name, kept) for name in DESCRIPTIONS if name != "beam"]
-    words = "Factor between the hysteresis of a description and the beam's, upwards or downwards."
-    run.table("accuracy", off, words, of=Accuracy)
+    run.table("accuracy", off, "Hysteresis of a description against the beam's, as a factor.", of=Accuracy)
     from studies.experiment.hysteresis import figure  # matplotlib is slow to import
 
     run.figure("hysteresis", figure.draw_curves(scene, rows, letters=run.letters), figure.CURVES)
@@ -138,8 +134,7 @@ def hysteresis(
     m = maximal_period(nordmark_at(scene, frequency))
     if branch := or_none(branch_of, scene, frequency, m, model) or []:
         run.figure("branch", figure.draw_branch(branch, frequency, m), figure.BRANCH)
-    words = f"The branch of p{m} of the beam at {frequency:.2f} Hz."
-    run.table("branch", branch, words, of=OnBranch, show=())
+    run.table("branch", branch, "The orbits of one branch of the beam.", of=OnBranch, show=())
     judge(run, rows, {found.description: found for found in off}, causes[-1], higher=model.n_modes > 1)
     within = [row for found in run.map(partial(inside_band, scene, inside), BANDS, "bands") for row in found]
     run.table("bands", within, "Hysteresis 1 − F_m/F_g across the bands of p_m.", of=Inside, show=())
@@ -186,19 +181,16 @@ def judge(
         run.say("no p_m has a fold in the map, Eq. (1) and the beam: there is nothing to compare")
         return
     own, two = factors["truncation_of_the_map"], off["two_parameters"]
-    size = written(off["map"].median, 3)
+    size, most = written(off["map"].median, 3), max(factors, key=lambda name: abs(math.log(factors[name])))
     run.finding(f"The map's hysteresis differs from the beam's by a factor of {size} in the median.")
-    most = max(factors, key=lambda name: abs(math.log(factors[name])))
     if abs(math.log(factors[most])) > math.log(NEARLY):
-        run.finding(
-            f"Of all causes of the difference the {most.replace('_', ' ')} is the largest: it multiplies the "
-            f"hysteresis by {written(factors[most], 3)}."
-        )
+        words = f"The largest cause is the {most.replace('_', ' ')}, which multiplies the hysteresis by"
+        run.finding(f"{words} {written(factors[most], 3)}.")
     if higher:
-        run.finding(
-            "Restitution and time delay in place of the higher modes give the beam's hysteresis to a factor "
-            f"of {written(two.median, 3)} in the median."
+        words = (
+            "Restitution and time delay instead of the higher modes give the beam's hysteresis to a factor of"
         )
+        run.finding(f"{words} {written(two.median, 3)} in the median.")
     run.verdict(
         "hysteresis",
         "in part" if max(own, 1.0 / own) > NEARLY else "agrees",

@@ -53,11 +53,10 @@ def draw_curves(scene: Scene, rows: Sequence[Folds], *, letters: bool) -> Figure
     for number, (axis, sign) in enumerate(zip(axes, (1.0, -1.0), strict=True)):
         curves(axis, rows, sign)
         for edge in edges:
-            if letters:
-                words = "upper edge of the band of p$_m$, letter's error of T"
-                axis.axvspan(*(edge.upper * unsure), **shade, label=words)
-            else:
-                axis.axvline(edge.upper, color="0.75", label="upper edge of the band of p$_m$")
+            words = "upper edge of the band of p$_m$" + ", letter's error of T" * letters
+            axis.axvspan(
+                *(edge.upper * (unsure if letters else np.array([1.0, 1.0005]))), **shade, label=words
+            )
         for seen in periods_of(scene) if letters else ():
             axis.axvline(seen, **LETTER, label="letter's Fig. 2: p$_m$ named above")
         plotting.panel(axis, number, ("end of the orbits", "the same, logarithmic")[number])
@@ -68,7 +67,7 @@ def draw_curves(scene: Scene, rows: Sequence[Folds], *, letters: bool) -> Figure
     if letters:
         stable = "letter: stability of the amplitude"
         plotting.mark_letter(axes[1].yaxis, letter.AMPLITUDE_STABILITY, words=stable, along=0.01)
-    plotting.label(axes[0].yaxis, "end of p$_m$, $F_m/F_g - 1$")
+    plotting.label(axes[0].yaxis, "$F_m/F_g - 1$")
     plotting.label(axes[1].yaxis, plotting.HYSTERESIS)
     plotting.label(axes[1].xaxis, "drive frequency", "Hz")
     plotting.legend_below(figure, axes[:1], 3)
@@ -85,7 +84,7 @@ def curves(axis: Axes, rows: Sequence[Folds], sign: float) -> None:
     crossed = [(row.frequency_hz, end) for row, end in ends if sign * end < 0.0 and not row.beam_admissible]
     look: plotting.Style = {"markersize": 3.5, "color": VERMILION, "label": "beam, would touch elsewhere too"}
     if crossed:
-        axis.plot(*np.array(crossed).reshape(-1, 2).T, "x", **look)
+        axis.plot(*np.array(crossed).T, "x", **look)
 
 
 def names_of_bands(axes: Sequence[Axes], scene: Scene, edges: Sequence[Band], letters: bool) -> None:
@@ -103,28 +102,24 @@ def names_of_bands(axes: Sequence[Axes], scene: Scene, edges: Sequence[Band], le
 
 @plotting.in_house_style
 def draw_branch(rows: Sequence[OnBranch], frequency: float, m: int) -> Figure:
-    """Approach speed against the excess, with the events; the amplitudes are as far above grazing as three
-    times the fold is below it."""
+    """Approach speed against the excess, up to three times the depth of the fold, with the events."""
     shown = [row for row in rows if row.excess <= 3.0 * abs(min(one.excess for one in rows))]
     figure, axis = plotting.new_figure(height=0.072)
-    excess, speed, stable, admissible = (
-        np.array([getattr(row, name) for row in shown])
-        for name in ("excess", "speed", "stable", "admissible")
-    )
-    excess, speed = 1e2 * excess, 1e3 * speed
+    excess, speed = np.array([(1e2 * row.excess, 1e3 * row.speed) for row in shown]).T
+    stable, admissible = np.array([(row.stable, row.admissible) for row in shown]).T
     plotting.branch(axis, excess, speed, stable, admissible)
     axis.axvline(0.0, **GUIDE, label="grazing")
-    for row in (row for row in shown if row.event):
-        place = 1e2 * row.excess, 1e3 * row.speed
-        axis.plot(*place, "o", color=BLACK, markersize=3.5)
-        left = place[0] > 0.5 * excess.max()
-        at: plotting.Style = {
-            "textcoords": "offset points",
-            "fontsize": NOTE,
-            "ha": "right" if left else "left",
-        }
-        at["xytext"] = (-5.0, -10.0) if left else (6.0, -3.0)
-        axis.annotate(EVENTS.get(row.event, row.event), place, **at)
+    for place, row in enumerate(shown):
+        if row.event:
+            last = excess[place] > 0.5 * excess.max()
+            at: plotting.Style = {"textcoords": "offset points", "fontsize": NOTE}
+            at |= (
+                {"xytext": (-5.0, -10.0), "ha": "right"}
+                if last
+                else {"xytext": (6.0, -8.0 if row.event == "grazing" else -2.0)}
+            )
+            axis.plot(excess[place], speed[place], "o", color=BLACK, markersize=3.5)
+            axis.annotate(EVENTS.get(row.event, row.event), (excess[place], speed[place]), **at)
     axis.set_yscale("log")
     axis.set_title(f"p$_{{{m}}}$ of the beam at {frequency:.2f} Hz", loc="left")
     plotting.label(axis.xaxis, plotting.EXCESS, "%")
@@ -145,13 +140,8 @@ def draw_bands(scene: Scene, path: Sequence[NordmarkMap], *, letters: bool) -> F
         gamma = np.exp(-np.concatenate([rates, rates[::-1]]) / f)
         alpha = 2.0 * np.sqrt(gamma) * np.cos(2.0 * np.pi / (f * mode.free_period_s))
         axis.fill(alpha, gamma, color=plotting.PALETTE[m % 6 + 1], alpha=0.35, linewidth=0.4)
-        axis.text(
-            0.5 * (alpha[79] + alpha[80]),
-            1.055 if m == 7 else 1.015,
-            f"p$_{{{m}}}$",
-            fontsize=NOTE,
-            ha="center",
-        )
+        high = 1.055 if m == 7 else 1.015  # side by side they would touch
+        axis.text(0.5 * (alpha[79] + alpha[80]), high, f"p$_{{{m}}}$", fontsize=NOTE, ha="center")
     low, high = (corresponding(scene, f) for f in FREQUENCIES_HZ)
     words = f"path from {low:.4g} to {high:.4g} Hz"
     axis.plot([p.alpha for p in path], [p.gamma for p in path], color="black", linewidth=1.4, label=words)

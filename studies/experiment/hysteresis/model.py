@@ -56,20 +56,13 @@ FREQUENCIES_HZ = (19.6, 23.8)
 EDGE = 1e-7
 """Distance of the last frequency in a band from its upper edge, relative to the band."""
 
-SPEEDS, BRANCH_STEP = (2e-3, 4.0), 0.05
-"""Ends of a branch, in speeds of its fold, and its longest step of arc length."""
-
 BELOW_BAND = 0.5
 """How far below its band in the map a period is looked for, in widths of the band: there it coexists."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Folds:
-    """F_m/F_g - 1 at the fold of p_m in all descriptions; None where there is none.
-
-    A fold of the beam that is not admissible is one of the equations alone: its orbit would touch the stop
-    elsewhere too.
-    """
+    """F_m/F_g - 1 at the fold of p_m in all descriptions; None where there is none."""
 
     frequency_hz: float
     m: int
@@ -82,7 +75,9 @@ class Folds:
     two_parameters: Annotated[float | None, "one mode, restitution and delay"] = None
     all_mode_kick: Annotated[float | None, "kick of all modes"] = None
     beam: float | None = None
-    beam_admissible: Annotated[bool | None, "the beam's orbit touches once"] = None
+    beam_admissible: Annotated[bool | None, "the beam's orbit exists; it would touch elsewhere otherwise"] = (
+        None
+    )
 
     def ratio(self, description: str, reference: str = "beam") -> float | None:
         """Its hysteresis over that of the reference; None unless both end on the same side of grazing."""
@@ -180,7 +175,7 @@ def inside_band(scene: Scene, count: int, period: int) -> list[Inside]:
     ]
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class OnBranch:
     """An orbit p_m of the beam on its branch."""
 
@@ -197,16 +192,11 @@ def branch_of(scene: Scene, frequency: float, m: int, model: ModalModel) -> list
     fold = family.fold()
     if fold is None:
         return []
-    family = Shooting(oscillator=family.oscillator, period=m, impacts=fold.impacts)
-    speeds = {"low": SPEEDS[0] * fold.speed, "high": SPEEDS[1] * fold.speed}
-    branch = follow(family, fold, **speeds, step=BRANCH_STEP)
-    found = [(orbit, "") for orbit in branch.orbits] + [(event.orbit, event.kind) for event in branch.events]
-    return [
-        OnBranch(
-            excess=one.excess, speed=one.speed, stable=one.stable, admissible=one.admissible, event=event
-        )
-        for one, event in sorted(found, key=lambda pair: pair[0].speed)
-    ]
+    family = replace(family, impacts=fold.impacts)
+    branch = follow(family, fold, low=2e-3 * fold.speed, high=4.0 * fold.speed, step=0.05)
+    found = [*((orbit, "") for orbit in branch.orbits), *((one.orbit, one.kind) for one in branch.events)]
+    rows = [OnBranch(one.excess, one.speed, one.stable, one.admissible, kind) for one, kind in found]
+    return sorted(rows, key=lambda row: row.speed)
 
 
 def path_of(scene: Scene) -> list[NordmarkMap]:

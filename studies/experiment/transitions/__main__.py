@@ -8,12 +8,9 @@ Computed, at each frequency, for the Nordmark map (Eqs. (2), (3)), the single mo
 with the restitution and delay of the beam's own collisions (`studies.physics.two_parameters`), and the beam
 with its N modes:
 
-    period           period of the settled orbit at F/F_g - 1 = 1e-3 (born: and at 2.5e-4, 1e-2), started
-                     below grazing
-    excess_down      F/F_g - 1 at which that orbit ends when the amplitude is lowered: bracketed by a scan,
-                     and then the fold, period doubling or grazing (ends_by) that is in the bracket
-    exact            the fold of p_m without simulation: in closed form for the map and Eq. (1), for the two
-                     parameters from the kicks that collisions of the beam give mode 1
+    period           period of the settled orbit at F/F_g - 1 = 1e-3 (born: and at 2.5e-4, 1e-2)
+    excess_down      where that orbit ends when the amplitude is lowered: bracketed by a scan, then located
+    exact            the fold of p_m without simulation
     extracted        restitution and delay on the settled orbit, and the map with that restitution
     orbit diagram    strobed points in an upward and a downward scan that carry the physical state along
 
@@ -123,23 +120,19 @@ def tell(run: Run, rows: Sequence[Transition]) -> None:
     """The findings on the beam: its born periods, and the deepest of its orbits below grazing."""
     beams = [row for row in rows if row.description == "beam" and row.period is not None]
     ours = {row.frequency_hz: row.period for row in beams}
+    sentence, seen = "Map, Eq. (1) and beam have the same period just above grazing", rows
     if run.letters:
-        other = [row.frequency_hz for row in beams if row.period != row.letter and row.letter is not None]
-        sentence = "Just above grazing the beam has the period that the letter saw, at every drive frequency"
-    else:
-        other = [row.frequency_hz for row in rows if row.period != ours.get(row.frequency_hz)]
-        sentence = "Map, Eq. (1) and beam have the same period just above grazing, at every drive frequency"
-    other = sorted(set(other))
+        sentence, seen = "Just above grazing the beam has the period that the letter saw", beams
+    own = [row.letter if run.letters else row.period for row in seen]
+    pairs = zip(seen, own, strict=True)
+    other = sorted({row.frequency_hz for row, m in pairs if m not in (None, ours.get(row.frequency_hz))})
     but = f" but {other[0]:.2f} Hz" if len(other) == 1 else f" but {len(other)}" if other else ""
     if beams and len(other) < len(ours):
-        run.finding(f"{sentence}{but}.")
-    deepest = min(beams, key=lambda row: row.excess_down or 0.0, default=None)
-    if deepest is not None and (deepest.excess_down or 0.0) < 0.0:
-        depth = written(-100.0 * (deepest.excess_down or 0.0), 2)
-        run.finding(
-            f"When the amplitude is lowered again, the beam's {word(deepest.period)} remains until {depth} % "
-            "below grazing, the widest hysteresis of all."
-        )
+        run.finding(f"{sentence}, at every drive frequency{but}.")
+    depth, m = min(((row.excess_down or 0.0, row.period) for row in beams), default=(0.0, 0))
+    if depth < 0.0:
+        words = f"When the amplitude is lowered again, the beam's p{m} remains until"
+        run.finding(f"{words} {written(-100.0 * depth, 2)} % below grazing, the widest hysteresis of all.")
 
 
 def judge(run: Run, rows: Sequence[Transition]) -> bool:

@@ -45,17 +45,16 @@ def draw(
             "two_parameters": ("tip displacement $ξ$", "mm"),
             "beam": (f"read-out {read}", "mm" if read == "displacement" else "mrad"),
         }[name]
-        for place, axis in enumerate(axes.flat[: len(rows)]):
-            if place + columns >= len(rows):
-                plotting.label(axis.xaxis, *sideways)
+        for axis in axes.flat[max(len(rows) - columns, 0) : len(rows)]:
+            plotting.label(axis.xaxis, *sideways)
         for axis in axes[:, 0]:
             plotting.label(axis.yaxis, *upwards)
         named = dict[str, Any]()
         for axis in axes.flat:
             named |= dict(zip(*axis.get_legend_handles_labels()[::-1], strict=True))
         texts = sorted(named, key=lambda text: (*ORDER, text).index(text))
-        marks = [named[text] for text in texts]
-        figure.legend(marks, texts, loc="outside lower center", ncols=3, markerscale=1.5)
+        place: plotting.Style = {"loc": "outside lower center", "ncols": 3, "markerscale": 1.5}
+        figure.legend([named[text] for text in texts], texts, **place)
     return figure
 
 
@@ -72,13 +71,8 @@ def panel(axis: Axes, row: Transition, found: Mapping[str, Diagram], letters: bo
         beside = (diagram.excess < 0.0) & ~np.isin(diagram.period, (1, row.period or 0))
         moving |= {a for a, kind in zip(amplitude, diagram.kind, strict=True) if kind == "not settled"}
         points = diagram.points[settled] * (1.0 if grazing is None else 1e3)
-        plotting.strobe_points(axis, amplitude[settled], points, ~beside[settled], look, f"{way}ward scan")
-        if np.any(beside & settled):
-            pale: plotting.Style = {
-                "markeredgecolor": plotting.tint(look[0], plotting.PALE),
-                "markerfacecolor": "none",
-            }
-            axis.plot([], [], "o", markersize=look[2], **pale, label="pale: orbit with several impacts")
+        words = f"{way}ward scan", "pale: orbit with several impacts"
+        plotting.strobe_points(axis, amplitude[settled], points, ~beside[settled], look, *words)
     for place, value in enumerate(sorted(moving)):
         axis.axvline(value, color="0.75", linewidth=0.5, zorder=1, label="_" if place else "not settled")
     at = 0.0 if grazing is None else 1e3 * grazing
