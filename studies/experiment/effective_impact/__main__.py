@@ -124,10 +124,10 @@ def judge(run: Run, at: Approach, orbits: Sequence[Approach], floors: Sequence[F
         note=f"{share:.2f} of the time v/a in which the tip would turn by itself",
         figure="speed",
     )
-    above = ", more than the letter estimates" if run.letters and lossy > letter.RESTITUTION + NEAR else ""
+    above = ": more than the letter estimates" if run.letters and lossy > letter.RESTITUTION + NEAR else ""
     run.finding(
-        "Whatever the mass of the ball and the loss in the contact, a first collision leaves mode 1 a "
-        f"restitution of {written(lossy, 2)} or more{above}."
+        f"A first collision leaves mode 1 a restitution of at least {written(lossy, 2)}, whatever ball and "
+        f"contact{above}."
     )
     if returned:
         run.finding(

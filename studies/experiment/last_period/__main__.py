@@ -140,7 +140,7 @@ def judge(
     if of_eq_1 and first is None:
         run.finding(f"{noisy} the strobe points of Eq. (1) stay apart for every period that was tried.")
     elif first is not None:
-        last = ", the last period that the letter saw" if run.letters and first == HIGHEST else ""
+        last = ", the last that the letter saw" if run.letters and first == HIGHEST else ""
         run.finding(f"{noisy} the strobe points of Eq. (1) merge from p{first} on{last}.")
     if run.letters:
         plain = effects[1].six_from

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from functools import partial
 from typing import Any
@@ -27,6 +28,7 @@ from studies.measurement.next_measurement.model import (
     measurements_at,
 )
 from studies.shell import plotting
+from studies.shell.columns import written
 from studies.shell.run import Run
 
 BEST = ("frequency_hz", "excess", "period", "errors", "together")
@@ -35,7 +37,7 @@ BEST = ("frequency_hz", "excess", "period", "errors", "together")
 PLANE = "Standard errors over frequency and excess by the best orbit at each place."
 
 ERRORS = {
-    "free_period": ("free period", "standard error (ms)", 1e3),
+    "free_period": ("free period", "standard error (µs)", 1e6),
     "decay_rate": ("decay rate", "standard error (1/s)", 1.0),
     "gap": ("gap", "standard error (mm)", 1e3),
     "restitution": ("restitution", "standard error", 1.0),
@@ -44,6 +46,8 @@ ERRORS = {
 """Parameter -> name, label and scale of its error."""
 
 
+LEVELS = (-1e-2, -1e-3, 0.0, 1e-3, 1e-2)
+"""Excesses that are written on the axis."""
 GREY = matplotlib.colormaps["Greys"](0.25)
 RING: plotting.Style = {
     "marker": "o",
@@ -81,6 +85,17 @@ def edges(centres: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.concatenate([centres[:1] - half[:1], centres[:-1] + half, centres[-1:] + half[-1:]])
 
 
+def ticks_of(low: float, high: float) -> list[float]:
+    """Round numbers on a logarithmic scale: three or more, if there are as many."""
+    powers, found = range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1), list[float]()
+    for steps in ((1,), (1, 3), (1, 2, 5)):
+        found = [step * 10.0**power for power in powers for step in steps]
+        found = [tick for tick in found if low <= tick <= high]
+        if len(found) > 2:
+            break
+    return found
+
+
 @plotting.in_house_style
 def draw_plane(found: Sequence[Measurement], plan: Plan, letters: bool) -> Figure:
     """The error of each wanted parameter over frequency and excess."""
@@ -104,17 +119,20 @@ def draw_plane(found: Sequence[Measurement], plan: Plan, letters: bool) -> Figur
         if np.isfinite(seen).any():
             mesh = axis.pcolormesh(*cells, seen, cmap="viridis_r", norm=LogNorm())
             bar = figure.colorbar(mesh, ax=axis, location="bottom", label=words)
-            bar.ax.xaxis.set_minor_formatter("")
+            bar.minorticks_off()
+            bar.set_ticks(ticks := ticks_of(*mesh.get_clim()), labels=[written(tick) for tick in ticks])
         if letters:
             (marks["letter, at an excess of 0.001"],) = axis.plot(
                 list(letter.PERIODS), [1e-3] * len(letter.PERIODS), **plotting.LETTER_POINTS
             )
         for number, one in enumerate(best(found), 1):
-            circle = {"boxstyle": "circle,pad=0.15", "fc": "white", "lw": 0.5}
-            place = {"ha": "center", "va": "center", "fontsize": plotting.NOTE, "bbox": circle}
+            circle = {"boxstyle": "circle,pad=0.1", "fc": "white", "lw": 0.5}
+            place = {"ha": "center", "va": "center", "fontsize": plotting.NOTE - 1.5, "bbox": circle}
             axis.annotate(str(number), (one.frequency_hz, one.excess), **place)
             marks["the best places, 1 the best"] = Line2D([], [], **RING)
         axis.set_yscale("symlog", linthresh=STABLE)
+        axis.minorticks_off()
+        axis.set_yticks(LEVELS, [written(level) for level in LEVELS])
         plotting.panel(axis, k, title)
         plotting.label(axis.xaxis, "drive frequency", "Hz")
     marks["white: no orbit"] = Patch(facecolor="white", edgecolor="0.5", linewidth=0.5)
