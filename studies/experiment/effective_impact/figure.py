@@ -49,7 +49,7 @@ def line(axis: Any, rows: Sequence[Approach], column: str, number: int, name: st
 def panels(rows: Sequence[Approach], curve: str, quantity: str, arc_of: str) -> tuple[Figure, list[Any]]:
     """The series of a curve, a panel for each quantity; beside the delay the arc v/a of one series."""
     figure, axes = plotting.new_figure(1, len(AXES), width=PAGE, height=0.066)
-    figure.get_layout_engine().set(wspace=0.06)  # type: ignore[union-attr]
+    figure.set_layout_engine("constrained", wspace=0.06)
     for place, (axis, (column, (title, words, unit, _))) in enumerate(zip(axes, AXES.items(), strict=True)):
         for number, name in enumerate(series_of(rows, curve)):
             line(axis, select(rows, curve, name), column, number, name)

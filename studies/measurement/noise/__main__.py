@@ -149,8 +149,8 @@ def effect_of_noise(
         f"{KINDS[chosen.correlation_s > 0.0]} {way} the observed hysteresis by {written(abs(change), 2)}."
     )
     run.finding(
-        f"Noise makes {100.0 * share:.0f} % of the difference between the observed hysteresis and that of the "
-        "map; the truncation of the map makes the rest."
+        f"Noise makes {100.0 * share:.0f} % of the difference between the observed hysteresis and the map's; "
+        "the truncation of the map makes the rest."
     )
     if hidden:
         names = " and ".join(dict.fromkeys(each.split()[0] for each in hidden))
