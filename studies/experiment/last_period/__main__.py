@@ -137,9 +137,10 @@ def judge(
         note="first period whose closest strobe points merge in noise of the amplitude's stability",
     )
     noisy = f"In {f'a {kind}' if noises[0].correlation_s else 'white noise'} of the drive amplitude"
-    if of_eq_1 and first is None:
-        run.finding(f"{noisy} the strobe points of Eq. (1) stay apart for every period that was tried.")
-    elif first is not None:
+    if first is None:
+        apart = "stay apart for every period" if of_eq_1 else "show no period"
+        run.finding(f"{noisy} the strobe points of Eq. (1) {apart} that was tried.")
+    else:
         last = ", the last that the letter saw" if run.letters and first == HIGHEST else ""
         run.finding(f"{noisy} the strobe points of Eq. (1) merge from p{first} on{last}.")
     if run.letters:

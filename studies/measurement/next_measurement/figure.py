@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from functools import partial
 from typing import Any
@@ -13,6 +12,7 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from matplotlib.ticker import FuncFormatter, LogLocator
 from numpy.typing import NDArray
 
 from studies import letter
@@ -46,19 +46,6 @@ ERRORS = {
 """Parameter -> name, label and scale of its error."""
 
 
-LEVELS = (-1e-2, -1e-3, 0.0, 1e-3, 1e-2)
-"""Excesses that are written on the axis."""
-GREY = matplotlib.colormaps["Greys"](0.25)
-RING: plotting.Style = {
-    "marker": "o",
-    "markersize": 6,
-    "mfc": "white",
-    "mec": "black",
-    "mew": 0.5,
-    "ls": "none",
-}
-
-
 def tabulated(
     run: Run, of: Of, plan: Plan, frequencies: Sequence[float], excesses: Sequence[float]
 ) -> list[Measurement]:
@@ -85,17 +72,6 @@ def edges(centres: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.concatenate([centres[:1] - half[:1], centres[:-1] + half, centres[-1:] + half[-1:]])
 
 
-def ticks_of(low: float, high: float) -> list[float]:
-    """Round numbers on a logarithmic scale: three or more, if there are as many."""
-    powers, found = range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1), list[float]()
-    for steps in ((1,), (1, 3), (1, 2, 5)):
-        found = [step * 10.0**power for power in powers for step in steps]
-        found = [tick for tick in found if low <= tick <= high]
-        if len(found) > 2:
-            break
-    return found
-
-
 @plotting.in_house_style
 def draw_plane(found: Sequence[Measurement], plan: Plan, letters: bool) -> Figure:
     """The error of each wanted parameter over frequency and excess."""
@@ -115,12 +91,14 @@ def draw_plane(found: Sequence[Measurement], plan: Plan, letters: bool) -> Figur
             (seen if one.kept else lost)[up.index(excess), across.index(f)] = error
         if np.isfinite(lost).any():
             axis.pcolormesh(*cells, 0.0 * lost, cmap="Greys", vmin=-1.0, vmax=3.0)
-            marks["orbit that does not outlive its errors"] = Patch(color=GREY)
+            marks["orbit that does not outlive its errors"] = Patch(color=matplotlib.colormaps["Greys"](0.25))
         if np.isfinite(seen).any():
             mesh = axis.pcolormesh(*cells, seen, cmap="viridis_r", norm=LogNorm())
-            bar = figure.colorbar(mesh, ax=axis, location="bottom", label=words)
+            bar = figure.colorbar(
+                mesh, ax=axis, location="bottom", label=words, ticks=LogLocator(subs=(1, 3))
+            )
             bar.minorticks_off()
-            bar.set_ticks(ticks := ticks_of(*mesh.get_clim()), labels=[written(tick) for tick in ticks])
+            bar.formatter = FuncFormatter(lambda tick, _: written(tick))
         if letters:
             (marks["letter, at an excess of 0.001"],) = axis.plot(
                 list(letter.PERIODS), [1e-3] * len(letter.PERIODS), **plotting.LETTER_POINTS
@@ -129,10 +107,11 @@ def draw_plane(found: Sequence[Measurement], plan: Plan, letters: bool) -> Figur
             circle = {"boxstyle": "circle,pad=0.1", "fc": "white", "lw": 0.5}
             place = {"ha": "center", "va": "center", "fontsize": plotting.NOTE - 1.5, "bbox": circle}
             axis.annotate(str(number), (one.frequency_hz, one.excess), **place)
-            marks["the best places, 1 the best"] = Line2D([], [], **RING)
+            ring = Line2D([], [], marker="o", mfc="white", mec="black", ls="none")
+            marks["the best places, 1 the best"] = ring
         axis.set_yscale("symlog", linthresh=STABLE)
         axis.minorticks_off()
-        axis.set_yticks(LEVELS, [written(level) for level in LEVELS])
+        axis.set_yticks(levels := (-1e-2, -1e-3, 0.0, 1e-3, 1e-2), map(written, levels))
         plotting.panel(axis, k, title)
         plotting.label(axis.xaxis, "drive frequency", "Hz")
     marks["white: no orbit"] = Patch(facecolor="white", edgecolor="0.5", linewidth=0.5)
