@@ -81,7 +81,7 @@ def mass(rows: Sequence[Approach], letters: bool) -> Figure:
     """Restitution, delay and kick against the mass of ball and mount. The restitution is smallest where the
     kick is near one."""
     figure, axes = panels(rows, "mass", MASS, "excess 0.013")
-    looks = ((True, "x", "settled orbit, excess 0.013"), (False, "|", "the same, no return of mode 1"))
+    looks = ((True, "x", "settled orbit, excess 0.013"), (False, "|", "the same, no return"))
     for returns, mark, name in looks:
         chosen = [row for row in on_orbits(rows) if row.returns is returns]
         heights = [row.restitution if returns else 0.0 for row in chosen]
@@ -93,5 +93,5 @@ def mass(rows: Sequence[Approach], letters: bool) -> Figure:
         axis.set_ylim(top=top)
     if letters:
         plotting.mark_letter(axes[0].yaxis, letter.RESTITUTION, words="letter, τ ≈ 0.1")
-    plotting.legend_below(figure, axes, 3, handlelength=3.0)
+    plotting.legend_below(figure, axes, 3, handlelength=2.4)
     return figure

@@ -146,5 +146,5 @@ def judge(
     if run.letters:
         plain = effects[1].six_from
         when = f"only from an excess of {written(plain, 2)} on" if plain else "at no excess"
-        run.finding(f"Eq. (1) has all six periods of the letter {when}, if nothing else acts.")
+        run.finding(f"Eq. (1) has all six periods of the letter {when}.")
     return merged
