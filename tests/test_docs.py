@@ -137,9 +137,8 @@ def told_by(name: str, found: dict) -> Iterator[str]:
         assert found["hidden"] == ["p6 at 22.60 Hz", "p8 at 23.05 Hz"]
         places = {(row["frequency_hz"], row["m"]) for row in rows}
         yield f"{found['settings']['scans']} scans up and 100 down at each of {len(places)} places"
-        shift, part = re.findall(r"by -([\d.]+)e-04 .* makes (\d+)%", found["answers"]["hysteresis"])[0]
-        yield f"takes {shift}e-4 off the hysteresis"
-        yield f"makes {part} % of the difference"
+        yield f"takes {-1e4 * found['change']:.1f}e-4 off the hysteresis"
+        yield f"makes {100.0 * found['share']:.0f} % of the difference"
     if name == "last_period":
         assert found["first_merged"]["white"] == 10
         by = {row["cause"]: row["six_from"] for row in found["p10"]}
@@ -190,7 +189,7 @@ def told_by(name: str, found: dict) -> Iterator[str]:
             span = f"{min(slower):+.2f} to {max(slower):+.2f} %"
             yield cells(f"{row['kappa']:+.3f}", f"{faster:+.3f} %", span, row["survive"])
     if name == "identify":
-        digits = re.findall(r"to ([\d.]+)", found["answers"]["period"])
+        digits = re.findall(r" to ([\d.]+\d)", " ".join(found["findings"][1:]))
         yield f"the letter's free period to {digits[0]} ms"
         yield f"the restitution to {digits[1]}"
 

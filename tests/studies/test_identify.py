@@ -283,14 +283,14 @@ def test_a_model_that_is_too_small_is_no_answer_and_leaves_no_table(run_study, t
         (772943.0, 46128.0, "N/m", "773(46) kN/m", "727 to 819"),
         (772943.0, 461280.0, "N/m", "770(460) kN/m", "310 to 1230"),
         (0.0123, 0.00451, "m", "12.3(4.5) mm", "7.8 to 16.8"),
-        (1.7e-7, 5.8e-7, "m", "0.17(58) \u00b5m", "-0.41 to 0.75"),
+        (1.7e-7, 5.8e-7, "m", "0.17(58) \u00b5m", "−0.41 to 0.75"),
         (22.2, 0.0996, "Hz", "22.20(10) Hz", "22.10 to 22.30"),
         (0.18, 0.004, "1", "0.1800(40)", "0.1760 to 0.1840"),
     ],
 )
 def test_estimates_are_rounded_to_the_second_digit_of_the_error(estimate, error, unit, value, interval):
     ends = estimate - error, estimate + error
-    row = Estimate("mine", "gap", unit, estimate, estimate, error, *ends, estimate, ())
+    row = Estimate("mine", "gap", unit, estimate, estimate, error, *ends, estimate, {})
     assert (row.value, row.interval) == (value, interval) and row.began == row.in_scene == value.split("(")[0]
 
 
@@ -318,7 +318,7 @@ def test_with_loud_noise_no_place_of_the_next_measurement_is_kept(tmp_path, lett
     run = Run(study="identify", folder=tmp_path, scene=letter_scene, command="")
     places = program.where_to_measure(letter_scene, run, next_measurement.Plan().names, None, 1e-3)
     assert places == [] and "measurements.csv" in run.files
-    assert "no orbit exists" in run.close("done", {})["answers"]["period"]
+    assert "no orbit exists" in run.close("done", {"rows": []})["findings"][0]
 
 
 def test_the_example_makes_a_record_of_each_kind_and_finds_what_it_put_in(run_study, monkeypatch):
@@ -334,7 +334,7 @@ def test_the_example_makes_a_record_of_each_kind_and_finds_what_it_put_in(run_st
         "p3",
         "p11",
     }
-    assert ran.summary["answers"].keys() == {"period"}
+    assert "free period" in ran.summary["findings"][1] and "correlation_gap" in ran.rows("parameters")[0]
 
 
 def test_a_fitted_beam_is_a_scene(made):

@@ -303,8 +303,10 @@ def test_a_scale_is_found_where_the_gap_or_the_amplitude_is_held(scene_of_eq1, s
         right(found, amplitude)
         assert found.estimate[-1] == pytest.approx(-0.85, abs=4.0 * found.errors[-1])
     rows = [Profile(parameter="gap", value=v, other="decay_rate", other_value=v, depth=v) for v in (1.0, 2.0)]
-    *_, profile, other = figure.draw({"mine": found}, {"mine": rows}).axes
-    assert [text.get_text() for text in profile.get_legend().get_texts()] == ["$\\chi^2$", "decay rate"]
+    drawn = figure.draw({"mine": found}, {"mine": rows})
+    *_, profile, other = drawn.axes
+    named = [text.get_text() for text in drawn.legends[0].get_texts()]
+    assert named[2:] == ["rise of $\\chi^2$", "90 % interval", "other parameter, fitted again"]
     for side in (profile, other):  # an axis has the colour of its curve
         assert side.yaxis.label.get_color() == side.lines[0].get_color()
 

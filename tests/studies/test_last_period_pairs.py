@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -60,7 +58,7 @@ def test_what_settles_is_where_the_orbit_is_in_closed_form(single, rows, monkeyp
 
 
 def test_the_six_contradict_the_printed_period_in_the_map_by_p10_alone(rows):
-    both, wider = rows[0.0, "all"], rows[0.0, "all, f +- 0.005 Hz"]
+    both, wider = rows[0.0, "all"], rows[0.0, "all, f ± 0.005 Hz"]
     assert (both.from_m, both.to_m) == (8, 10)
     assert [both.lowest_s, both.highest_s] == pytest.approx([40.490e-3, 40.700e-3], abs=1e-6)
     assert [both.missed_by_s, wider.missed_by_s] == pytest.approx([80e-6, 71.3e-6], abs=0.1e-6)
@@ -81,8 +79,6 @@ def test_at_an_excess_eq_1_has_them_all(single, rows):
         assert is_born(one, 4e-3, 21.50, FREE_PERIOD_S) == (tau < 0.18)
 
 
-def test_the_longest_stretch_is_found_and_bisected(rows):
+def test_the_longest_stretch_is_found_and_bisected():
     assert longest(lambda x: x < 0.05 or 0.2 < x < 0.7, 0.0, 1.0) == pytest.approx((0.2, 0.7), abs=1e-6)
     assert longest(lambda x: False, 0.0, 1.0) == (np.inf, -np.inf)
-    made = [*rows.values(), replace(rows[1e-3, "all"], excess=4e-3)]
-    assert str(rows[0.0, "all"]) in pairs.sentence(made)

@@ -102,7 +102,7 @@ def test_the_limit_is_the_fold():
     """D and its error by moving the parameters; towards the fold the errors alone vanish as D^(1/2)."""
     nodes = Nodes(of(22.20), 5)
     near, far = (measurement(nodes.at(nodes.fold.excess + d), nodes, PLAN) for d in (1e-8, 1e-6))
-    assert np.array(near.alone) / far.alone == pytest.approx(0.1, rel=0.1)
+    assert np.array([*near.alone.values()]) / [*far.alone.values()] == pytest.approx(0.1, rel=0.1)
     assert not near.kept and near.distance == pytest.approx(1e-8, rel=1e-3)
 
 
@@ -136,7 +136,9 @@ def test_the_errors_by_the_letters_orbits(plane):
     assert alone[1, 1] == pytest.approx(0.0066, rel=0.05) and np.delete(alone[:, 1], 1).min() > 0.1
     assert errors_of([six[0], six[2]], PLAN)[1:] == pytest.approx((0.003, 3.9e-6), rel=0.05)
     rows = design.letter_rows(of, PLAN)
-    best = min((row for row in rows if len(row.speeds) == 2), key=lambda row: row.errors[1])
-    assert best.orbits == "p3 and p5" in design.answer(plane, rows, PLAN)
-    drawn = figure.draw_plane(plane, PLAN)
+    best = min((row for row in rows if row.other_speed), key=lambda row: row.errors["restitution"])
+    assert best.orbits == "p3 and p5" in design.findings(plane, rows)[1]
+    drawn, other = (figure.draw_plane(plane, PLAN, letters) for letters in (True, False))
     assert isinstance(drawn, Figure) and len(drawn.axes) == 6
+    marked = [[text.get_text() for text in one.legends[0].get_texts()] for one in (drawn, other)]
+    assert {*marked[0]} - {*marked[1]} == {"letter, at an excess of 0.001"}

@@ -11,8 +11,9 @@ import pytest
 from contact import StroboscopicMap, first_collision
 from contact.orbits import Shooting, born_period
 from studies import letter
+from studies.experiment.soft_wall import figure
 from studies.experiment.soft_wall.closed_forms import SoftWall, hertz_doubling, hertz_kick
-from studies.experiment.soft_wall.model import doubling_near, doubling_of, loss_of_stability
+from studies.experiment.soft_wall.model import Kick, doubling_near, doubling_of, loss_of_stability
 from studies.shell.scene import beam_at, read_scene, single_mode_at
 
 SCENE = read_scene("letter")
@@ -107,6 +108,15 @@ def test_beam_with_hertz_contact(frequency, turns):
 
 
 # the study
+
+
+def test_the_letter_is_marked_on_its_spring_alone():
+    numbers = {"kick_velocity": 1e-3, "closed_form": None, "soft_law": 1e-3, "hard_law": 1e-2}
+    cases = zip(figure.CASES, (1e3, None), strict=True)
+    rows = [Kick(case=case, hardness=hardness, excess=1e-4, **numbers) for case, hardness in cases]
+    drawn = {letters: figure.draw_kicks(rows, letters) for letters in (True, False)}
+    for letters, one in drawn.items():
+        assert any("letter" in text.get_text() for axis in one.axes for text in axis.texts) == letters
 
 
 def test_small_form(run_study):

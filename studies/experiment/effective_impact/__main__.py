@@ -81,15 +81,14 @@ def effective_impact(scene: Scene, run: Run) -> Mapping[str, object]:
     )
     from studies.experiment.effective_impact import figure  # matplotlib is slow to import
 
-    if select(rows, "mass"):
-        run.figure("mass", figure.mass(rows, run.letters), figure.MASSES)
-    run.figure("speed", figure.speed(rows, run.letters), figure.SPEEDS)
+    for draw in (figure.mass, figure.speed) if select(rows, "mass") else (figure.speed,):
+        run.figure(draw.__name__, draw(rows, run.letters), " ".join((draw.__doc__ or "").split()))
     quoted = next(iter(select(rows, "reference")), None)
-    if quoted is not None and quoted.returns and any(floor.local_restitution == 1.0 for floor in floors):
-        judge(run, quoted, on_orbits(rows), floors)
-    elif quoted is not None and quoted.impacts:
-        back = f"comes back with a restitution of {written(quoted.restitution, 2)}"
-        run.finding(f"After a first collision, mode 1 {back if quoted.returns else 'does not come back'}.")
+    if quoted is not None:
+        delay = f"delays mode 1 by {written(1e3 * quoted.delay_s, 2)} ms"
+        run.finding(f"A first collision {delay if quoted.returns else 'keeps mode 1 from coming back'}.")
+        if quoted.returns and any(floor.local_restitution == 1.0 for floor in floors):
+            judge(run, quoted, on_orbits(rows), floors)
     return {
         "rows": rows,
         "frequency_hz": frequency,
@@ -116,22 +115,12 @@ def judge(run: Run, at: Approach, orbits: Sequence[Approach], floors: Sequence[F
         note=f"{lossy:.2f} at least with any loss in the contact; on settled orbits the ringing of the "
         "collision before moves the touch",
     )
-    delay, share = f"{1e3 * at.delay_s:.3f} ms", at.delay_s / at.arc_s
-    run.verdict(
-        "delay",
-        "not printed",
-        found=f"{delay} at an excess of {at.excess:g}",
-        note=f"{share:.2f} of the time v/a in which the tip would turn by itself",
-        figure="speed",
-    )
-    above = ", more than the letter estimates" if run.letters and lossy > letter.RESTITUTION + NEAR else ""
-    run.finding(
-        "Whatever the mass of the ball and the loss in the contact, a first collision leaves mode 1 a "
-        f"restitution of {written(lossy, 2)} or more{above}."
-    )
+    delay = f"{1e3 * at.delay_s:.3f} ms at an excess of {at.excess:g}"
+    note = f"{at.delay_s / at.arc_s:.2f} of the time v/a in which the tip would turn by itself"
+    run.verdict("delay", "not printed", found=delay, note=note, figure="speed")
+    above = ": more than the letter estimates" if run.letters and lossy > letter.RESTITUTION + NEAR else ""
+    low = f"of at least {written(lossy, 2)}, whatever ball and contact{above}"
+    run.finding(f"A first collision leaves mode 1 a restitution {low}.")
     if returned:
-        run.finding(
-            "On settled orbits, where the collision before still rings, the restitution is as low as "
-            f"{written(min(returned), 2)} at some masses."
-        )
-    run.finding(f"A first collision delays mode 1 by {written(1e3 * at.delay_s, 2)} ms.")
+        low = f"as low as {written(min(returned), 2)} at some masses"
+        run.finding(f"On settled orbits, where the collision before still rings, the restitution is {low}.")

@@ -22,15 +22,6 @@ AXES = {
 
 MASS = "tip mass / leaf mass"
 
-SPEEDS = (
-    "Restitution, delay and kick against the excess above grazing. Kick and loss fade towards grazing, where "
-    "the contact takes longer than the arc beyond the plate."
-)
-MASSES = (
-    "Restitution, delay and kick against the mass of ball and mount. The restitution is smallest where the "
-    "kick is near one."
-)
-
 
 def line(axis: Any, rows: Sequence[Approach], column: str, number: int, name: str) -> None:
     """One series."""
@@ -49,7 +40,7 @@ def line(axis: Any, rows: Sequence[Approach], column: str, number: int, name: st
 def panels(rows: Sequence[Approach], curve: str, quantity: str, arc_of: str) -> tuple[Figure, list[Any]]:
     """The series of a curve, a panel for each quantity; beside the delay the arc v/a of one series."""
     figure, axes = plotting.new_figure(1, len(AXES), width=PAGE, height=0.066)
-    figure.get_layout_engine().set(wspace=0.06)  # type: ignore[union-attr]
+    figure.set_layout_engine("constrained", wspace=0.06)
     for place, (axis, (column, (title, words, unit, _))) in enumerate(zip(axes, AXES.items(), strict=True)):
         for number, name in enumerate(series_of(rows, curve)):
             line(axis, select(rows, curve, name), column, number, name)
@@ -65,7 +56,8 @@ def panels(rows: Sequence[Approach], curve: str, quantity: str, arc_of: str) -> 
 
 @plotting.in_house_style
 def speed(rows: Sequence[Approach], letters: bool) -> Figure:
-    """The curves against the excess; shaded, for the letter's spring, below its amplitude stability."""
+    """Restitution, delay and kick against the excess above grazing. Kick and loss fade towards grazing, where
+    the contact takes longer than the arc beyond the plate."""
     figure, axes = panels(rows, "speed", plotting.EXCESS, "Hertz")
     hertz = select(rows, "speed", "Hertz")
     floor, words = [math.sqrt(row.contact_s / row.arc_s) for row in hertz], "√(contact time · a/v)"
@@ -75,13 +67,8 @@ def speed(rows: Sequence[Approach], letters: bool) -> Figure:
     for axis, bounds in zip(axes, ((0.0, 1.05), (1e-2, 1e1), (0.0, 1.1)), strict=True):
         axis.set_xscale("log")
         if letters:
-            band = {
-                "color": "0.92",
-                "zorder": -1,
-                "linewidth": 0,
-                "label": "letter: stability of the amplitude",
-            }
-            axis.axvspan(least, letter.AMPLITUDE_STABILITY, **band)
+            words = "letter: stability of the amplitude"
+            axis.axvspan(least, letter.AMPLITUDE_STABILITY, color="0.92", zorder=-1, lw=0, label=words)
         axis.set(xlim=(least, most), ylim=bounds)
     if letters:
         plotting.mark_letter(axes[0].yaxis, letter.RESTITUTION, words="letter, τ ≈ 0.1", along=0.02)
@@ -91,9 +78,10 @@ def speed(rows: Sequence[Approach], letters: bool) -> Figure:
 
 @plotting.in_house_style
 def mass(rows: Sequence[Approach], letters: bool) -> Figure:
-    """The curves against the tip mass, beside them the collisions on settled orbits."""
+    """Restitution, delay and kick against the mass of ball and mount. The restitution is smallest where the
+    kick is near one."""
     figure, axes = panels(rows, "mass", MASS, "excess 0.013")
-    looks = ((True, "x", "settled orbit, excess 0.013"), (False, "|", "the same, no return of mode 1"))
+    looks = ((True, "x", "settled orbit, excess 0.013"), (False, "|", "the same, no return"))
     for returns, mark, name in looks:
         chosen = [row for row in on_orbits(rows) if row.returns is returns]
         heights = [row.restitution if returns else 0.0 for row in chosen]
@@ -105,5 +93,5 @@ def mass(rows: Sequence[Approach], letters: bool) -> Figure:
         axis.set_ylim(top=top)
     if letters:
         plotting.mark_letter(axes[0].yaxis, letter.RESTITUTION, words="letter, τ ≈ 0.1")
-    plotting.legend_below(figure, axes, 3, handlelength=3.0)
+    plotting.legend_below(figure, axes, 3, handlelength=2.4)
     return figure

@@ -137,13 +137,14 @@ def judge(
         note="first period whose closest strobe points merge in noise of the amplitude's stability",
     )
     noisy = f"In {f'a {kind}' if noises[0].correlation_s else 'white noise'} of the drive amplitude"
-    if of_eq_1 and first is None:
-        run.finding(f"{noisy} the strobe points of Eq. (1) stay apart for every period that was tried.")
-    elif first is not None:
-        last = ", the last period that the letter saw" if run.letters and first == HIGHEST else ""
+    if first is None:
+        apart = "stay apart for every period" if of_eq_1 else "show no period"
+        run.finding(f"{noisy} the strobe points of Eq. (1) {apart} that was tried.")
+    else:
+        last = ", the last that the letter saw" if run.letters and first == HIGHEST else ""
         run.finding(f"{noisy} the strobe points of Eq. (1) merge from p{first} on{last}.")
     if run.letters:
         plain = effects[1].six_from
         when = f"only from an excess of {written(plain, 2)} on" if plain else "at no excess"
-        run.finding(f"Eq. (1) has all six periods of the letter {when}, if nothing else acts.")
+        run.finding(f"Eq. (1) has all six periods of the letter {when}.")
     return merged

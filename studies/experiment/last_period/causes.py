@@ -33,8 +33,8 @@ from studies.shell.scene import (
     spring_of,
 )
 
-EXCESSES = (AMPLITUDE_STABILITY, 1e-3, 4e-3, 1e-2)
-"""Of the columns `born` and `others`."""
+EXCESSES = {f"at_excess_{excess:g}": excess for excess in (AMPLITUDE_STABILITY, 1e-3, 4e-3, 1e-2)}
+"""Of the columns `born` and `others`, by their names."""
 
 CYCLES, SUSPENSION_RATIO = 8000, 0.1
 """Most drive periods; damping ratio of the exciter, assumed."""
@@ -143,17 +143,12 @@ class Effect:
     six_to: Annotated[float | None, "greatest excess with all six periods"]
 
 
-def key_of(excess: float) -> str:
-    """An excess in the name of a column."""
-    return f"at_excess_{excess:g}"
-
-
 def effect_of(scene: Scene, step: float, cause: Cause) -> Effect:
     """The effect of a cause on a grid of excesses from the letter's stability to 0.02.
 
     Each excess is `step` times the one before.
     """
-    letter, grid = periods_of(scene), (EXCESSES[0] * step ** np.arange(math.log(80.0, step))).tolist()
+    letter, grid = periods_of(scene), (AMPLITUDE_STABILITY * step ** np.arange(math.log(80.0, step))).tolist()
     *five, last = sorted(letter)
 
     def period(f: float, excess: float) -> int | None:
@@ -168,6 +163,6 @@ def effect_of(scene: Scene, step: float, cause: Cause) -> Effect:
         p10_to=max(ten, default=None),
         six_from=min(six, default=None),
         six_to=max(six, default=None),
-        born={key_of(e): period(last, e) for e in EXCESSES},
-        others={key_of(e): sum(period(f, e) == letter[f] for f in five) for e in EXCESSES},
+        born={at: period(last, e) for at, e in EXCESSES.items()},
+        others={at: sum(period(f, e) == letter[f] for f in five) for at, e in EXCESSES.items()},
     )

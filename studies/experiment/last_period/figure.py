@@ -45,12 +45,11 @@ def draw_tornado(rows: Sequence[Transition]) -> Figure:
         for row in after:
             if row.frequency_hz == base.frequency_hz and row.parameter in parameters:
                 draw_change(axis, row, base.fold if deep else None, parameters.index(row.parameter))
-        plotting.panel(axis, number, f"{base.frequency_hz:.2f} Hz, p$_{{{base.m}}}$")
-        words = f"without: {written(-(base.fold or 0.0), 2)}" if deep else "without a change: none"
-        axis.text(
-            0.99, -0.95, words, transform=axis.get_yaxis_transform(), ha="right", va="center", size=NOTE
-        )
-        axis.axvline(1.0, color="0.3", linewidth=0.7, zorder=3)
+        plotting.panel(axis, number, f"{base.frequency_hz:.2f} Hz, {word(base.m)}")
+        words = f"hysteresis {written(-(base.fold or 0.0), 2)}" if deep else "no hysteresis to change"
+        note: plotting.Style = {"ha": "right", "va": "center", "fontsize": NOTE}
+        axis.text(0.99, -0.95, words, transform=axis.get_yaxis_transform(), **note)
+        axis.vlines(1.0, -0.5, len(parameters) - 0.4, color="0.3", linewidth=0.7, zorder=3)
         axis.set(xscale="log", xlim=(LEFT, RIGHT), ylim=(-1.4, len(parameters) - 0.4))
         axis.set_xticks([0.25, 0.5, 1.0, 2.0, 4.0], ["0.25", "0.5", "1", "2", "4"])
         axis.minorticks_off()

@@ -79,9 +79,7 @@ def soft_wall(
     judge_wall(run, doublings)
     if beam and beam.square_root_from is not None:
         end = written(beam.square_root_from, 2)
-        run.finding(
-            f"A Hertz contact smooths the square root in the kick of the beam below an excess of {end}."
-        )
+        run.finding(f"A Hertz contact smooths the square root of the beam's kick below an excess of {end}.")
     if beam and scene.contact.law == "hertz":
         judge_beam(run, beam)
     return {"rows": doublings, "beam": beam}
@@ -101,13 +99,9 @@ def judge_wall(run: Run, doublings: Sequence[Doubling]) -> None:
         found=f"Eq. (1): doubling at {ends}",
         note=f"excess of the period doubling at {first[0][0]:.2f} Hz",
     )
-    most = f"an excess of {written(max(row[2] for row in found), 2)}"
-    if len(first) > 1 and falls:
-        run.finding(
-            f"The softer the wall, the larger the amplitude at which p1 doubles its period: up to {most}."
-        )
-    else:
-        run.finding(f"At a soft wall p1 doubles its period at {most} or less.")
+    softer = "The softer the wall, the larger the amplitude at which p1 doubles its period: up to"
+    alone, most = "At a soft wall p1 doubles its period at up to", written(max(row[2] for row in found), 2)
+    run.finding(f"{softer if len(first) > 1 and falls else alone} an excess of {most}.")
 
 
 def judge_beam(run: Run, beam: Beam) -> None:
@@ -117,14 +111,10 @@ def judge_beam(run: Run, beam: Beam) -> None:
         return
     below, loss = "within what the letter could resolve", f"p1 doubles its period at {written(end, 2)}"
     if lost < stable:
-        below = (
-            f"{stable / lost:.0f} times below the letter's amplitude stability, which is why it was not seen"
-        )
+        below = f"{stable / lost:.0f} times below the letter's amplitude stability, which hides it"
     if beam.turns:
-        loss = (
-            f"p1 loses its stability at {written(lost, 2)} by a complex pair of multipliers; a multiplier "
-            f"passes −1 at {written(end, 2)}, where p1 is unstable already"
-        )
+        loss = f"p1 loses its stability at {written(lost, 2)} by a complex pair of multipliers; a multiplier "
+        loss += f"passes −1 at {written(end, 2)}, where p1 is unstable already"
     run.verdict(
         "smoothing",
         "differs" if lost >= stable else "in part" if lost > UNSEEN else "agrees",

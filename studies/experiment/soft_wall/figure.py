@@ -42,8 +42,8 @@ def draw_kicks(rows: Sequence[Kick], letters: bool) -> Figure:
             axis.loglog(
                 excess, hard, color="0.45", linewidth=1.2, linestyle=":", label="hard wall, power 1/2"
             )
-    for style, name in (("-", "closed form"), ("--", "law of a soft touch")):
-        axes[0].plot([], [], style, color="0.3", linewidth=0.8, label=name)
+    for line, name in (("-", "closed form"), ("--", "law of a soft touch")):
+        axes[0].plot([], [], line, color="0.3", linewidth=0.8, label=name)
     axes[0].set_ylim(bottom=0.3 * min((row.kick_velocity for row in rows), default=1e-6))
     plotting.label(axes[0].yaxis, "kick of one collision", "m/s")
     plotting.legend_below(figure, axes, 4)

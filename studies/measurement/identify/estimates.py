@@ -46,9 +46,7 @@ class Estimate:
     start: Annotated[float, "where the fit began, in the SI unit"]
     estimate: Annotated[float, "estimate, in the SI unit"]
     standard_error: Annotated[float, "standard error, in the SI unit"]
-    low90: Annotated[
-        float, "lower end of the 90 % interval, in the SI unit; by the likelihood if that is known"
-    ]
+    low90: Annotated[float, "lower end of the 90 % interval, in the SI unit; by the likelihood if known"]
     high90: Annotated[float, "upper end of the 90 % interval, in the SI unit"]
     scene: Annotated[float, "value of the scene, in the SI unit"]
     correlation: Annotated[Mapping[str, float], "correlation with another"]
@@ -177,18 +175,12 @@ def report(run: Run, found: Mapping[str, Fit]) -> dict[str, Any]:
     run.table("quality", quality, "The residuals of the fits.", of=Quality)
     points = [row for rows in profiles.values() for row in rows]
     run.table("profile", points, "Likelihood where two parameters trade off.", of=Profile, show=())
-    residuals = {f"residuals_{name}": one.residuals for name, one in found.items()}
     holds = "Reading less fit of each row of a record, in the units of its columns: m, m/s, or an excess."
-    run.arrays("residuals", holds, **residuals)
+    run.arrays("residuals", holds, **{f"residuals_{name}": one.residuals for name, one in found.items()})
     run.figure("identify", figure.draw(found, profiles), figure.CAPTION)
     for name, note in [(name, note) for name, one in found.items() for note in notes_of(one)]:
         run.say(f"{name}: {note}")
-    best = min(
-        (one for one in estimates if one.estimate), key=lambda one: abs(one.standard_error / one.estimate)
-    )
-    name, part = (
-        best.parameter.replace("_", " "),
-        written(100.0 * abs(best.standard_error / best.estimate), 1),
-    )
-    run.finding(f"Of all fitted parameters the {name} is known best: to {part} % of its value.")
+    part, name = min((abs(o.standard_error / o.estimate), o.parameter) for o in estimates if o.estimate)
+    best = f"{name.replace('_', ' ')} is known best: to {written(100.0 * part, 1)} % of its value"
+    run.finding(f"Of all fitted parameters the {best}.")
     return {"rows": estimates, "quality": quality}

@@ -35,9 +35,10 @@ def draw(found: Mapping[str, Fit], profiles: Mapping[str, Sequence[Profile]]) ->
     for i, ((name, one), row) in enumerate(zip(found.items(), axes, strict=True)):
         _record(row[0], row[1], one)
         _trade(row[2], one, profiles[name])
-        shown = "trade-off of two parameters" if profiles[name] else "correlations of the estimates"
-        for k, words in enumerate((f"{name}: record and fit", "residuals", shown)):
+        shown = "trade-off" if profiles[name] else "correlations"
+        for k, words in enumerate((f"record {name}", "residuals", shown)):
             plotting.panel(row[k], 3 * i + k, words)
+    plotting.legend_below(figure, figure.axes, 5)
     return figure
 
 
@@ -45,12 +46,12 @@ def _record(left: Any, middle: Any, one: Fit) -> None:
     """Record and fit, and residuals below the same axis."""
     kind, rows = one.record.kind, one.record.rows
     table = kind == "transitions"
-    unit, fine, words = (1e2, 1e2, "end of $p_m$, excess") if table else (1e3, 1e6, "tip displacement")
+    unit, fine, words = (1e2, 1e2, "end of $p_m$") if table else (1e3, 1e6, "tip")
     seen, residuals = one.record.observed[:, 0], one.residuals[:, 0]
     fitted = seen - residuals
     if kind == "displacement":
         place, across = 1e3 * rows[:, 0], ("time", "ms")
-        left.plot(place, unit * seen, **DOTS, color=plotting.SKY, label="record")
+        left.plot(place, unit * seen, **DOTS, color=plotting.BLUE, label="record")
         left.plot(place, unit * fitted, color=plotting.BLACK, linewidth=0.6, label="fit")
         left.set_xlim(place[0], place[0] + 1e3 * SHOWN * one.oscillator.period)
     else:
@@ -58,25 +59,22 @@ def _record(left: Any, middle: Any, one: Fit) -> None:
         if table:
             place, across = rows[:, 0], ("drive frequency", "Hz")
             errors = unit * one.record.units(one.noise)[:, 0]
-        left.errorbar(place, unit * seen, errors, **plotting.points(1), label="record")
+        left.errorbar(place, unit * seen, errors, **plotting.points(1))[0].set_label("record")
         left.plot(place, unit * fitted, **FITTED)
     middle.plot(place, fine * residuals, **DOTS, color=plotting.BLUE)
     middle.axhline(0.0, **plotting.GUIDE)
     for axis in (left, middle):
         plotting.label(axis.xaxis, *across)
+    left.margins(y=0.1)
     plotting.label(left.yaxis, words, "%" if table else "mm")
-    plotting.label(middle.yaxis, "record − fit", "%" if table else "\u00b5m")
-    left.margins(y=0.25)
-    marks, names = left.get_legend_handles_labels()
-    (fit, record) = sorted(zip(names, marks, strict=True), key=lambda pair: pair[0])
-    left.legend([record[1], fit[1]], ["record", "fit"], loc="upper right", ncols=2)
+    plotting.label(middle.yaxis, "residual", "%" if table else "\u00b5m")
 
 
 def _trade(axis: Any, one: Fit, rows: Sequence[Profile]) -> None:
     """The profile of the most correlated pair, else all correlations."""
     if not rows:
-        image = axis.imshow(one.correlations, vmin=-1.0, vmax=1.0, cmap="RdBu")
-        axis.figure.colorbar(image, ax=axis, label="correlation", ticks=[-1.0, 0.0, 1.0])
+        image = axis.imshow(one.correlations, vmin=-1.0, vmax=1.0, cmap="RdBu", aspect="auto")
+        axis.figure.colorbar(image, cax=axis.inset_axes([1.04, 0.0, 0.06, 1.0]), ticks=[-1.0, 0.0, 1.0])
         names = [name.replace("_", "\n") for name in one.names]
         axis.set_xticks(range(len(names)), names, rotation=90)
         axis.set_yticks(range(len(names)), names)
@@ -95,16 +93,13 @@ def _trade(axis: Any, one: Fit, rows: Sequence[Profile]) -> None:
 
     value = shown(axis.xaxis, own[0].parameter, [row.value for row in own])
     lines = axis.plot(value, [row.depth for row in own], **plotting.series(1), label="rise of $\\chi^2$")
-    level = axis.axhline(DEPTH, **plotting.GUIDE, label="90 % interval")
-    axis.locator_params(axis="x", nbins=5)
-    axis.margins(y=0.25)
+    axis.axhline(DEPTH, **plotting.GUIDE, label="90 % interval")
+    axis.locator_params(axis="x", nbins=3)
+    axis.margins(y=0.1)
     plotting.label(axis.yaxis, "rise of $\\chi^2$")
     fitted = shown(other.yaxis, own[0].other, [row.other_value for row in own])
-    lines += other.plot(
-        value, fitted, **plotting.series(2), label=f"{own[0].other.replace('_', ' ')}, fitted again"
-    )
+    lines += other.plot(value, fitted, **plotting.series(2), label="other parameter, fitted again")
     for side, line in zip((axis, other), lines, strict=True):
         side.tick_params(axis="y", colors=line.get_color())
         side.yaxis.label.set_color(line.get_color())
     other.spines["right"].set_visible(True)
-    axis.legend(handles=[*lines, level], loc="upper center")

@@ -12,6 +12,7 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from matplotlib.ticker import FuncFormatter, LogLocator
 from numpy.typing import NDArray
 
 from studies import letter
@@ -27,6 +28,7 @@ from studies.measurement.next_measurement.model import (
     measurements_at,
 )
 from studies.shell import plotting
+from studies.shell.columns import written
 from studies.shell.run import Run
 
 BEST = ("frequency_hz", "excess", "period", "errors", "together")
@@ -35,24 +37,13 @@ BEST = ("frequency_hz", "excess", "period", "errors", "together")
 PLANE = "Standard errors over frequency and excess by the best orbit at each place."
 
 ERRORS = {
-    "free_period": ("free period", "standard error (ms)", 1e3),
+    "free_period": ("free period", "standard error (µs)", 1e6),
     "decay_rate": ("decay rate", "standard error (1/s)", 1.0),
     "gap": ("gap", "standard error (mm)", 1e3),
     "restitution": ("restitution", "standard error", 1.0),
     "delay": ("time delay", "standard error (µs)", 1e6),
 }
 """Parameter -> name, label and scale of its error."""
-
-
-GREY = matplotlib.colormaps["Greys"](0.25)
-RING: plotting.Style = {
-    "marker": "o",
-    "markersize": 6,
-    "mfc": "white",
-    "mec": "black",
-    "mew": 0.5,
-    "ls": "none",
-}
 
 
 def tabulated(
@@ -100,21 +91,27 @@ def draw_plane(found: Sequence[Measurement], plan: Plan, letters: bool) -> Figur
             (seen if one.kept else lost)[up.index(excess), across.index(f)] = error
         if np.isfinite(lost).any():
             axis.pcolormesh(*cells, 0.0 * lost, cmap="Greys", vmin=-1.0, vmax=3.0)
-            marks["orbit that does not outlive its errors"] = Patch(color=GREY)
+            marks["orbit that does not outlive its errors"] = Patch(color=matplotlib.colormaps["Greys"](0.25))
         if np.isfinite(seen).any():
             mesh = axis.pcolormesh(*cells, seen, cmap="viridis_r", norm=LogNorm())
-            bar = figure.colorbar(mesh, ax=axis, location="bottom", label=words)
-            bar.ax.xaxis.set_minor_formatter("")
+            bar = figure.colorbar(
+                mesh, ax=axis, location="bottom", label=words, ticks=LogLocator(subs=(1, 3))
+            )
+            bar.minorticks_off()
+            bar.formatter = FuncFormatter(lambda tick, _: written(tick))
         if letters:
             (marks["letter, at an excess of 0.001"],) = axis.plot(
                 list(letter.PERIODS), [1e-3] * len(letter.PERIODS), **plotting.LETTER_POINTS
             )
         for number, one in enumerate(best(found), 1):
-            circle = {"boxstyle": "circle,pad=0.15", "fc": "white", "lw": 0.5}
-            place = {"ha": "center", "va": "center", "fontsize": plotting.NOTE, "bbox": circle}
+            circle = {"boxstyle": "circle,pad=0.1", "fc": "white", "lw": 0.5}
+            place = {"ha": "center", "va": "center", "fontsize": plotting.NOTE - 1.5, "bbox": circle}
             axis.annotate(str(number), (one.frequency_hz, one.excess), **place)
-            marks["the best places, 1 the best"] = Line2D([], [], **RING)
+            ring = Line2D([], [], marker="o", mfc="white", mec="black", ls="none")
+            marks["the best places, 1 the best"] = ring
         axis.set_yscale("symlog", linthresh=STABLE)
+        axis.minorticks_off()
+        axis.set_yticks(levels := (-1e-2, -1e-3, 0.0, 1e-3, 1e-2), map(written, levels))
         plotting.panel(axis, k, title)
         plotting.label(axis.xaxis, "drive frequency", "Hz")
     marks["white: no orbit"] = Patch(facecolor="white", edgecolor="0.5", linewidth=0.5)

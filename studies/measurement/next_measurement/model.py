@@ -249,13 +249,11 @@ def findings(found: Sequence[Measurement], letters: Sequence[LetterOrbits]) -> l
         said.append("With this noise no orbit exists at one standard error from its excess.")
     if single:
         error = f"{1e3 * float(np.median(single)):.1g} ms"
-        said.append(
-            f"The strobes of one orbit of the letter, once recorded, determine the free period to {error}."
-        )
+        said.append(f"The strobes of one orbit of the letter determine the free period to {error}.")
     if two:
         first = min(two, key=lambda row: row.errors["restitution"])
         error = f"{first.errors['restitution']:.1g}"
-        said.append(f"{first.orbits} together determine the restitution to {error}; no single orbit does.")
+        said.append(f"Two orbits together, {first.orbits}, determine the restitution to {error}.")
     if chosen:
         place = f"p{chosen[0].period} at {chosen[0].frequency_hz:.2f} Hz"
         said.append(f"If the amplitude at grazing tells the gap, {place} is the best next measurement.")

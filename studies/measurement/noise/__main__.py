@@ -43,8 +43,6 @@ from studies.shell.sweep import sweep
 LOWEST_HZ, HIGHEST_HZ, BANDS = 19.6, 23.8, range(3, 11)
 """Of Fig. 3."""
 
-KINDS = "White noise of the drive amplitude", "Slow drift of the drive amplitude"
-
 SPACING = (0.1, 4), (0.5, 2)
 """Hz between places in a band, and places at least: the full form, the small one."""
 
@@ -81,11 +79,12 @@ def noise(
     ends = [row for rows in run.attempt(ends_of, made, "ends of orbits") for row in rows or ()]
     observed = [row for one in made if (row := observed_of(one)) is not None]
     off = [row.off**2 for row in ends if row.off is not None]
-    rms = f"formulas are {np.sqrt(np.mean(off or np.nan)):.2f} standard errors off (root mean square)"
+    if off:
+        run.say(f"formulas are {np.sqrt(np.mean(off)):.2f} standard errors off (rms of {len(off)} medians)")
     at_letter = [row for row in ends if (row.frequency_hz, row.m) in letters]
     shown = [row for row in observed if (row.frequency_hz, row.m) in letters]
     run.table("escape", ends, "Excess at which p_m and p1 end, simulated and by formula.", of=End, show=())
-    run.table("escape_at_letter", at_letter, f"The same at the frequencies of the scene; {rms}.", of=End)
+    run.table("escape_at_letter", at_letter, "The same at the frequencies of the scene.", of=End)
     run.table("observed", observed, "Hysteresis as an observer would measure it.", of=Observed, show=())
     run.table("observed_at_letter", shown, "The same at the frequencies of the scene.", of=Observed)
 
@@ -133,9 +132,7 @@ def effect_of_noise(
     met = [row for row in rows if np.isfinite(row.median)]
     whole = [row for row in met if row.map is not None and row.fold > chosen.stability]
     if not whole:
-        run.finding(
-            "In this noise of the drive amplitude no hysteresis of Eq. (1) can be compared with the map."
-        )
+        run.finding("In this noise of the amplitude no hysteresis can be compared with that of the map.")
         return {"hidden": []}
     shift = np.array([row.median - row.fold for row in whole])
     part = np.abs(shift) / (np.abs(shift) + np.abs([row.fold - (row.map or 0.0) for row in whole]))
@@ -144,14 +141,11 @@ def effect_of_noise(
         f"p{row.m} at {row.frequency_hz:.2f} Hz" for row in met if not row.seen and row.frequency_hz in given
     ]
     change, share = float(np.median(shift)), float(np.median(part))
-    way = "lowers" if change < 0.0 else "raises"
-    run.finding(
-        f"{KINDS[chosen.correlation_s > 0.0]} {way} the observed hysteresis by {written(abs(change), 2)}."
-    )
-    run.finding(
-        f"Noise makes {share:.0%} of the difference between the observed hysteresis and that of the map; "
-        "the truncation of the map makes the rest."
-    )
+    kind = "Slow drift" if chosen.correlation_s else "White noise"
+    by = f"{'lowers' if change < 0.0 else 'raises'} the observed hysteresis by {written(abs(change), 2)}"
+    run.finding(f"{kind} of the amplitude {by}.")
+    between = "of the difference between observation and map; the truncation of the map makes the rest"
+    run.finding(f"Noise makes {100.0 * share:.0f} % {between}.")
     if hidden:
         names = " and ".join(dict.fromkeys(each.split()[0] for each in hidden))
         run.finding(f"Noise of this size hides the hysteresis of {names}.")

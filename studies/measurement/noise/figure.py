@@ -41,17 +41,17 @@ def draw_observed(scene: Scene, rows: Sequence[Observed], letters: bool) -> Figu
             axis.fill_between(f, low, high, color=pale, linewidth=0, label="observed, 5-95 % of the scans")
             axis.plot(f, [row.median for row in own], color=VERMILION, marker=".", label="observed, median")
         for height in (-letter.AMPLITUDE_STABILITY, letter.AMPLITUDE_STABILITY):
-            axis.axhline(height, **GUIDE, label="axis: linear between these, logarithmic beyond")
+            axis.axhline(height, **GUIDE, label="axis linear between, logarithmic beyond")
         for frequency in scene.drive.frequencies_hz:
             axis.axvline(frequency, **LETTER, label=given)
         axis.set_yscale("symlog", linthresh=letter.AMPLITUDE_STABILITY, linscale=0.4)
         axis.set_ylim(-1e-3, 0.2)
-        ticks = (-5e-4, 0.0, 5e-4, 1e-3, 1e-2, 1e-1)
+        ticks = (-5e-4, 0.0, 1e-3, 1e-2, 1e-1)
         axis.set_yticks(ticks, [written(tick) for tick in ticks])
         axis.yaxis.set_minor_locator(NullLocator())
         plotting.panel(axis, number, f"{kind} noise" if kind == "white" else kind)
-        plotting.label(axis.yaxis, plotting.HYSTERESIS)
     axes[-1, 0].set_xlim(corresponding(scene, 19.5), corresponding(scene, 23.9))
+    figure.supylabel(plotting.HYSTERESIS)
     plotting.label(axes[-1, 0].xaxis, "drive frequency", "Hz")
     plotting.legend_below(figure, axes[:, 0], 3)
     return figure
