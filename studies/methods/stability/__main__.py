@@ -67,7 +67,7 @@ def sentences(rows: Sequence[Limit]) -> Iterator[str]:
     deep = [x for row, _, x in known if row.parameter == "overshoot / gap" and row.method.startswith("SciPy")]
     if deep:
         part = written(100.0 * max(deep), 2)
-        yield f"SciPy's event detection at worst misses half of the crossings of {part} % of the gap."
+        yield f"SciPy's events at worst miss half of the crossings that are {part} % of the gap deep."
     limits = [abs(found / theory - 1.0) for row, theory, found in known if row.refused]
     if limits and max(limits) < 1e-3:
         yield "Steps and stiffnesses that are too large fail where theory puts their limits."

@@ -12,8 +12,9 @@ from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.ticker import NullFormatter
 
-from studies.methods.work_precision.measures import Reference, Row
+from studies.methods.work_precision.measures import Point, Reference
 from studies.methods.work_precision.methods import EXACT, OUTSIDE, PERIODIC, STEPPED
 from studies.shell import plotting
 from studies.shell.plotting import MARKERS, PALETTE
@@ -25,7 +26,7 @@ COLOURS = (*PALETTE[1:7], "0.45")
 """Seven against eight markers: no two methods of a family look alike."""
 
 
-def styles_of(rows: Sequence[Row]) -> dict[str, dict[str, Any]]:
+def styles_of(rows: Sequence[Point]) -> dict[str, dict[str, Any]]:
     """Colour, marker and line of each method, the same in every panel, by family."""
     found: dict[str, dict[str, Any]] = {
         row.method: {"marker": "*", "color": PALETTE[0], "linestyle": "none", "markersize": 9, "zorder": 5}
@@ -48,20 +49,21 @@ def styles_of(rows: Sequence[Row]) -> dict[str, dict[str, Any]]:
 
 
 @plotting.in_house_style
-def draw_errors(rows: Sequence[Row], references: Sequence[Reference]) -> Figure:
-    """Error of mode 1 against time, one panel a problem."""
-    figure, axes = plotting.new_figure(3, 2, width=plotting.PAGE, height=0.25, squeeze=False)
+def draw_errors(rows: Sequence[Point], references: Sequence[Reference]) -> Figure:
+    """Error of mode 1 against time, one panel a problem; methods of one problem alone are named there."""
+    figure, axes = plotting.new_figure(2, 2, width=plotting.PAGE, height=0.185, squeeze=False)
     styles = styles_of(rows)
     for number, (reference, axis) in enumerate(zip(references, axes.flat, strict=False)):
         problem = reference.problem
         for name, style in styles.items():
             mine = [row for row in rows if (row.problem, row.method) == (problem.name, name)]
-            points = [(row.us_per_period, row.error) for row in mine if row.error is not None]
+            points = [(row.time_per_period_us, row.error) for row in mine if row.error is not None]
             if points:
                 cost, error = np.array(points).T
                 axis.plot(cost, np.maximum(error, FLOOR), label=name, **style)
         axis.set_xscale("log")
         axis.set_yscale("log")
+        axis.xaxis.set_minor_formatter(NullFormatter())
         own = math.ceil(math.log10(reference.own_error))
         plotting.panel(axis, number, f"{problem.title}\nreference good to 10$^{{{own}}}$")
         plotting.label(axis.xaxis, f"time per {problem.unit}", "µs")
