@@ -105,7 +105,8 @@ def work_precision(scene: Scene, run: Run) -> Mapping[str, object]:
         "work_precision",
         figures.draw_errors(rows, references),
         "Error of mode 1 past the first collision against the time for a drive period; for two masses, error "
-        "of a periodic orbit against the time that finds it.",
+        "of a periodic orbit against the time that finds it. The errors of the references are below "
+        f"{written(2.0 * max(one.own_error for one in references), 1)}.",
     )
     for sentence in sentences(rows):
         run.finding(sentence)
