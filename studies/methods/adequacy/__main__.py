@@ -44,7 +44,7 @@ def adequacy(scene: Scene, run: Run) -> Mapping[str, object]:
     run.figure(
         "least",
         draw(rows),
-        "Error of the least model over the tolerance, and that of the best model a step smaller in one thing.",
+        "Errors of the least model and of the best model a step smaller in one thing, over the tolerance.",
     )
     for sentence in sentences(rows):
         run.finding(sentence)

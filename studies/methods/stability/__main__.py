@@ -67,13 +67,12 @@ def sentences(rows: Sequence[Limit]) -> Iterator[str]:
     deep = [x for row, _, x in known if row.parameter == "overshoot / gap" and row.method.startswith("SciPy")]
     if deep:
         part = written(100.0 * max(deep), 2)
-        yield f"SciPy's events at worst miss half of the crossings that are {part} % of the gap deep."
+        yield f"SciPy's event search at worst misses half of the crossings {part} % of the gap deep."
     limits = [abs(found / theory - 1.0) for row, theory, found in known if row.refused]
     if limits and max(limits) < 1e-3:
         yield "Steps and stiffnesses that are too large fail where theory puts their limits."
-    if raised := [
-        found for row, theory, found in known if row.parameter == "restitution τ" and found > theory
-    ]:
-        yield f"A step as long as the contact raises the restitution to {written(max(raised), 2)}."
+    raised = max((found for row, _, found in known if row.parameter == "restitution τ"), default=0.0)
+    if raised:
+        yield f"With a step as long as the contact, the restitution comes out as up to {written(raised, 2)}."
     if ends := [found for row, _, found in known if row.case.endswith("falls through")]:
         yield f"An event loop without proof falls through the stop after {written(min(ends))} impacts."

@@ -104,14 +104,10 @@ def draw(arrays: Mapping[str, np.ndarray]) -> tuple[Figure, str]:
             markevery=3,
             label=label,
         )
-    stiff = "theory: trapezoidal, stiff"
-    axes.axhline(STIFF_GROWTH, color="0.5", linewidth=0.8, linestyle=":", label=stiff)
+    axes.axhline(STIFF_GROWTH, color="0.5", linewidth=0.8, linestyle=":", label="theory: trapezoidal, stiff")
     axes.axhline(0.0, **plotting.GUIDE, label="energy kept")
     axes.set_xscale("log")
     plotting.label(axes.xaxis, "step × contact frequency, h ω")
     plotting.label(axes.yaxis, "mean ln(energy ratio)")
     figure.legend(loc="outside lower center", ncols=2)
-    return (
-        figure,
-        "Mean growth of the energy, after over before one contact of a free mass, by implicit methods.",
-    )
+    return figure, "Mean growth of the energy of a free mass in one contact, by implicit methods."

@@ -201,10 +201,7 @@ def measure(scene: Scene, quick: bool) -> Findings:
     return limits, arrays
 
 
-HOLDS = (
-    "overshoot, fine: overshoots over the gap [1]; by kind and method: share of crossings missed at "
-    "overshoot, theory at fine [1]."
-)
+HOLDS = "overshoot, fine: overshoots over the gap [1]; the others: share missed there, theory at fine [1]."
 
 
 @plotting.in_house_style

@@ -1,14 +1,12 @@
 """Error against cost of every method for impacts.
 
 Claim: on these problems no outside solver and no method with a time step is both faster and as accurate as
-the exact method that `simulate` takes by default; the letter's own scheme, the same flights with a search
-that proves nothing (note [11]), costs about the same, and so does heyoka where one soft contact lasts as long
-as the run.
+the exact method, which `simulate` takes by default. Two cost about the same: the letter's scheme, which
+samples the same flights and proves nothing (note [11]), and heyoka where one soft contact lasts as long as the run.
 
 Four problems: Eq. (1) with the hard wall; the scene's beam with a linear contact that lasts as long as
 Hertz's; the same with Hertz's contact; the periodic motion of NLvib's two masses, found by harmonic balance,
-shooting or settling. For every method, the package's own
-and outside solvers, and every setting:
+shooting or settling. For every method, also of outside solvers, and every setting:
 
     error     of mode 1 past the first collision
     missed    share of shallow crossings of known depth that are not noticed by the free modes' motion
@@ -48,14 +46,8 @@ from studies.shell.columns import written
 from studies.shell.scene import Scene, harmonic, single_mode_at
 from studies.shell.study import Run, study
 
-SLOWEST_QUICK = 0.01
-"""Longest time for one drive period with --quick [s]."""
-
-GRADIENT_HZ = 22.2
-"""Drive frequency of the motion of Eq. (1) whose gradients are compared [Hz]."""
-
-MODES_QUICK = 4
-"""Modes of the beam with --quick."""
+SLOWEST_QUICK, MODES_QUICK, GRADIENT_HZ = 0.01, 4, 22.2
+"""With --quick: longest time for a drive period [s], modes of the beam. Drive frequency of gradients [Hz]."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -157,8 +149,6 @@ def judge(run: Run, rows: Sequence[Point]) -> None:
         run.verdict(
             "sampled",
             "agrees" if max(missed) == 0.0 else "in part",
-            found=f"up to {100.0 * max(missed):.0f} % of shallow touches missed"
-            if max(missed) > 0.0
-            else "no shallow touch missed",
+            found=f"{f'{100 * max(missed):.0f} %' if max(missed) else 'none'} of the shallow touches missed",
             note=f"the scheme in Eq. (1) with {scheme[0].setting} to {scheme[-1].setting}; it proves nothing",
         )

@@ -1,8 +1,4 @@
-"""Figure of the work-precision study.
-
-Methods differ in colour and marker, families in the line: solid for fixed steps, dashed for outside solvers;
-the exact method is one large point.
-"""
+"""Figure of the study: methods differ in colour and marker, families in the line, the exact one is a star."""
 
 from __future__ import annotations
 

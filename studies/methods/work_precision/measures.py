@@ -1,17 +1,14 @@
 """Errors and costs of every method at every setting.
 
-    error         mode 1 at the probe, past the collision: distance of (q/size, q'/speed) from the reference
-    missed        share of crossings of known depth that are not seen, each from `PHASES` starts with the free
-                  modes of the problem (``studies.methods.crossings``)
-    time          processor time of the thread per drive period along the settled orbit, the median of warm
-                  runs long enough that the clock and the call do not count (the swung beam's 12 ms cannot be
-                  made longer: there the call, 0.1 ms, is part of the cost)
+    error     mode 1 at the probe, past the collision: distance of (q/size, q'/speed) from the reference
+    missed    share of crossings of known depth that are not seen, each from `PHASES` starts with the free
+              modes of the problem (``studies.methods.crossings``)
+    time      processor time of the thread, along the settled orbit; the median of warm runs long enough that
+              the clock and the call do not count
 
-All methods here use one thread, whose time is on a free core the time that passes, and does not grow on a
-busy one. None stands for what does not exist (no drive). A setting that fails is a row with the sentence of
-its failure; one whose drive period is expected to take longer than a bound, from the setting before it, is a
-row that says so. For a periodic motion the error is that of mode 1 at a strobe in flight, the cost the time
-that finds it from the state 40 periods after rest. The reference has settled and errs by what does not close.
+All methods here use one thread, whose time does not grow on a busy core. For a periodic motion the error is
+that of mode 1 at a strobe in flight; the cost is the time that finds it from the state 40 periods after rest.
+The reference has settled and errs by what does not close.
 """
 
 from __future__ import annotations
@@ -37,20 +34,12 @@ from studies.methods.work_precision.problems import Problem, driven_problem, two
 from studies.methods.work_precision.reference import DIGITS, extended_motion
 from studies.methods.work_precision.timing import timed
 
-REPEATS = 9
-"""Timed runs of a point."""
+REPEATS, SLOWEST = 9, 0.5
+"""Timed runs of a point; longest drive period of a setting that is run [s]: errors and cost take twenty."""
 
-SLOWEST = 0.5
-"""Longest time for one drive period of a setting that is run [s]: its errors and its cost take twenty."""
-
-LONG_ENOUGH = 0.01
-"""Length of a timed run [s], a hundred times the call's own."""
-
-MOST_PERIODS = 512
-"""Bound of the periods of a timed run."""
-
-PATIENCE = 0.4
-"""Time spent on the repetitions of one point at most [s]; a slower run is timed once."""
+LONG_ENOUGH, MOST_PERIODS, PATIENCE = 0.01, 512, 0.4
+"""Length of a timed run [s], a hundred times the call's own; bound of its periods; time spent on repetitions
+of one point at most [s]: a slower run is timed once."""
 
 SAMPLES = {5: 1024, 11: 1024, 21: 1024, 41: 4096, 81: 16384, 161: 65536}
 """Orders of harmonic balance; samples grow with their square, so that both errors fall together."""
