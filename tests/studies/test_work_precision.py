@@ -128,7 +128,7 @@ def test_a_refused_or_slow_setting_is_a_row_with_its_sentence(few: Reference) ->
     refused, first, *rest = rows_of(few, sweep, slowest=1e-3, repeats=1)
     assert refused.failed.startswith("StepTooLarge") and first.failed == "" and len(rest) == 2
     assert all(one.failed.startswith("not run") for one in rest)
-    assert all(one.error is one.missed is one.us_per_period is None for one in (refused, *rest))
+    assert all(one.error is one.missed is one.time_per_period_us is None for one in (refused, *rest))
 
 
 def test_crossings_are_missed_by_a_coarse_grid_and_never_by_the_exact_method(few: Reference) -> None:

@@ -16,20 +16,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from studies.methods.adequacy.models import EQ_1, Models
 from studies.methods.adequacy.search import LeastModel, Search
 from studies.physics.least_model import middle_of
-from studies.shell.columns import written
 from studies.shell.scene import Scene, harmonic
 from studies.shell.study import Run, study
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-WIDEST = 2.0
-"""End of the axis of the figure: errors over their tolerances [1]."""
 
 
 @study()
@@ -48,8 +44,7 @@ def adequacy(scene: Scene, run: Run) -> Mapping[str, object]:
     run.figure(
         "least",
         draw(rows),
-        "Error of the least model for each question over its tolerance, and that of the best model that is a "
-        "step smaller in one thing. Both include the error of the reference.",
+        "Errors of the least model and of the best model a step smaller in one thing, over the tolerance.",
     )
     for sentence in sentences(rows):
         run.finding(sentence)
@@ -57,26 +52,15 @@ def adequacy(scene: Scene, run: Run) -> Mapping[str, object]:
 
 
 def sentences(rows: Sequence[LeastModel]) -> Iterator[str]:
-    """What the questions on impacts need."""
-    for row in rows:
-        if row.quantity == "restitution" and row.reached:
-            yield f"The restitution of a collision needs {needs([row])}."
+    """What the questions on impacts need, where some model answers them."""
+    for name, what in {"restitution": "restitution of a collision", "fold": "hysteresis"}.items():
+        found = [row for row in rows if row.quantity == name and row.reached]
+        if modes := max((row.modes for row in found if row.level != EQ_1.level), default=0):
+            yield f"The {what} needs {modes} mode{'s' * (modes > 1)} of the beam."
     born = [row for row in rows if row.quantity == "born period"]
-    if beyond := [row for row in born if not row.reached or row.level != EQ_1.level]:
-        most = f"but {written(beyond[0].frequency_hz)} Hz" if len(beyond) == 1 < len(born) else "but some"
-        where = f"at all drive frequencies {most}" if len(beyond) < len(born) else "at no drive frequency"
-        yield f"Eq. (1) gives the period that is born at grazing {where}."
-    elif born:
-        yield "Eq. (1) gives the period that is born at grazing wherever it was tried."
-    folds = [row for row in rows if row.quantity == "fold"]
-    if folds and all(row.reached for row in folds):
-        yield f"The hysteresis of the born orbit needs {needs(folds)}."
-
-
-def needs(rows: Sequence[LeastModel]) -> str:
-    """The largest of the least models, in words."""
-    modes = max(0 if row.level == EQ_1.level else row.modes for row in rows)
-    return f"{modes} mode{'s' * (modes > 1)} of the beam" if modes else "no more than Eq. (1)"
+    beyond = [f" except at {row.frequency_hz:g} Hz" for row in born if row.level != EQ_1.level]
+    if len(beyond) < min(2, len(born)):
+        yield f"Eq. (1) gives the period that is born at grazing{''.join(beyond)}."
 
 
 def questions(scene: Scene, quick: bool) -> list[tuple[str, float]]:
@@ -93,27 +77,23 @@ def draw(rows: Sequence[LeastModel]) -> Figure:
     """Errors over the tolerance, a line for each question that has an answer; its model on the right."""
     from studies.shell import plotting
 
-    shown = [row for row in rows if row.least != "none"][::-1]
+    shown, widest = [row for row in rows if row.least != "none"][::-1], 2.0
     with plotting.house_style():
         figure, axis = plotting.new_figure(width=plotting.PAGE, height=0.022 + 0.0055 * len(shown))
         for place, row in enumerate(shown):
-            smaller = None if row.error_one_less is None else row.error_one_less + row.parts["reference"]
+            smaller = math.nan if row.error_one_less is None else row.error_one_less + row.parts["reference"]
             errors = {"the least model": row.error, "the best model a step smaller": smaller}
             for number, (words, error) in enumerate(errors.items(), start=1):
-                if error is None:
-                    continue
-                over = error / row.tolerance if row.tolerance else math.inf if error else 0.0
+                over = error / row.tolerance if row.tolerance else math.inf if error > 0.0 else error
                 look = plotting.points(number) | {"clip_on": False, "label": words}
-                if over > WIDEST:
+                if over > widest:
                     look |= {"marker": ">", "color": "0.4", "label": "beyond the axis"}
-                axis.plot(min(over, WIDEST), place, **look)
-        for place, words in enumerate([*(row.least.removeprefix("beam, ") for row in shown), "least model:"]):
-            beside: dict[str, Any] = {"textcoords": "offset points", "va": "center"}
-            axis.annotate(
-                words, (1.0, place), (9.0, 0.0), axis.get_yaxis_transform(), fontsize=plotting.NOTE, **beside
-            )
+                axis.plot(min(over, widest), place, **look)
+            across, words = axis.get_yaxis_transform(), row.least.removeprefix("beam, ")
+            axis.text(1.08, place, words, transform=across, va="center", fontsize=plotting.NOTE)
+        axis.set_title("least model", x=1.08, loc="left")
         axis.axvline(1.0, **plotting.GUIDE, label="tolerance")
-        axis.set_xlim(0.0, WIDEST)
+        axis.set_xlim(0.0, widest)
         axis.set_yticks(range(len(shown)), [f"{row.quantity}, {row.frequency_hz:.2f} Hz" for row in shown])
         plotting.label(axis.xaxis, "error / tolerance")
         plotting.legend_below(figure, [axis], 4)

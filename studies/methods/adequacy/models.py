@@ -3,8 +3,7 @@
     Eq. (1)   Eq. (1) of the letter: one mode of measured period and decay rate, Newton's law with tau
     beam      the finite-element model of the spring, or its measured modes
 
-Of the spring: elements on a leg (four fifths of that on the bend), number of modes, whether one
-residual mode stands for those left out (``ModalModel.with_residual_mode``), and the contact law.
+A residual mode replaces those left out (``ModalModel.with_residual_mode``).
 """
 
 from __future__ import annotations

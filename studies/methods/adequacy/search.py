@@ -88,9 +88,7 @@ class LeastModel(Choice):
     tolerance: Annotated[float, "tolerance"]
     reached: Annotated[bool, "whether a model is within the tolerance; if not, the row is of the reference"]
     error: Annotated[float, "error; with that of the reference; none where the reference has no answer"]
-    error_one_less: Annotated[
-        float | None, "error of the best model a step smaller, without that of the reference"
-    ]
+    error_one_less: Annotated[float | None, "error of the best model a step smaller; without the reference's"]
     parts: Annotated[Mapping[str, float], "part of the error; what this simplification changes alone"]
     least: Annotated[str, "least model"]
 
@@ -176,7 +174,7 @@ class Search:
         error = self.error(choice) + own
         return LeastModel(
             **asdict(choice),
-            quantity=in_words(self.quantity),
+            quantity=self.quantity.replace("frequency ", "frequency of mode ").replace("_", " "),
             frequency_hz=self.frequency,
             unit=self.unit,
             tolerance=tolerance,
@@ -196,11 +194,6 @@ class Search:
             if enough(few):
                 yield first([replace(few, mesh=mesh) for mesh in meshes], enough)
             most = few.modes
-
-
-def in_words(quantity: str) -> str:
-    """A question as tables and figures have it."""
-    return quantity.replace("frequency ", "frequency of mode ").replace("_", " ")
 
 
 def _below(steps: Sequence[int], value: int) -> list[int]:

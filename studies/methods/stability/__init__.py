@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from importlib import import_module
 from itertools import pairwise
 from types import ModuleType
+from typing import Annotated
 
 import numpy as np
 
@@ -42,19 +43,14 @@ IMPLICIT: Mapping[str, Callable[[float], Integrator]] = {
 class Limit:
     """One quantity of one method: what theory gives for it and what was found."""
 
-    family: str
-    method: str
-    """As in ``contact.integrators.INTEGRATORS``, or the name of an outside solver."""
-    case: str
-    parameter: str
-    """What is limited, or measured, with its unit: "h omega_max [1]"."""
-    theory: float | None
-    """None where theory gives no number: a method without such a limit, or a statistical onset."""
-    measured: float | None
-    """None where the failure did not appear."""
-    refused: bool | None = None
-    """Whether it is refused just beyond the limit, before a number comes out; None if nothing is to be
-    refused."""
+    family: Annotated[str, "family of failures; as in the option families"]
+    method: Annotated[str, "method"]
+    case: Annotated[str, "case"]
+    parameter: Annotated[str, "what is limited or measured"]
+    unit: Annotated[str, "unit of theory and measurement"] = "1"
+    theory: Annotated[float | None, "theory; none where it gives no number"]
+    measured: Annotated[float | None, "measured; none where the failure did not appear"]
+    refused: Annotated[bool | None, "refused just beyond; none if there is nothing to refuse"] = None
 
 
 Findings = tuple[Sequence[Limit], Mapping[str, np.ndarray]]

@@ -11,22 +11,21 @@ families, each derived at the head of its file:
     missed_crossings     crossings that lie between two looks
     accumulation         infinitely many impacts in a finite time, counted one by one
 
-A row: family; method; case; the parameter with its unit; theory (empty where it gives no number); measured
-(empty where the failure did not appear); refused: whether the package refuses to go beyond before a number
-comes out (empty where there is nothing to refuse).
-
 Run:     python -m studies stability [--families explicit,splitting] [--quick]
 Writes:  limits.csv (all rows); for three families NAME.npz (arrays of its figure) and NAME.png
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 from typing import Annotated
 
 from beam import InvalidValue
 from studies.methods.stability import FAMILIES, Limit, family, findings
+from studies.shell.columns import written
+from studies.shell.run import MOST_FINDINGS
 from studies.shell.scene import Scene
 from studies.shell.study import Run, study
 
@@ -51,7 +50,29 @@ def stability(
         limits, arrays = result
         rows += limits
         if arrays:
-            run.arrays(name, **arrays)
+            run.arrays(name, family(name).HOLDS, **arrays)
             run.figure(name, *family(name).draw(arrays))
     run.table("limits", rows, "Where methods fail: theory and measurement.", of=Limit)
+    for sentence in list(sentences(rows))[:MOST_FINDINGS]:
+        run.finding(sentence)
     return {"rows": rows}
+
+
+def sentences(rows: Sequence[Limit]) -> Iterator[str]:
+    """What the families found, the clearest failure first; what was not measured is not said."""
+    known = [(row, row.theory or math.nan, row.measured) for row in rows if row.measured is not None]
+    if growth := [found for row, _, found in known if row.parameter.startswith("mean of ln")]:
+        factor = written(math.exp(growth[0]), 2)
+        yield f"The trapezoidal rule multiplies the energy of a stiff contact by {factor} on average."
+    deep = [x for row, _, x in known if row.parameter == "overshoot / gap" and row.method.startswith("SciPy")]
+    if deep:
+        part = written(100.0 * max(deep), 2)
+        yield f"SciPy's event search at worst misses half of the crossings {part} % of the gap deep."
+    limits = [abs(found / theory - 1.0) for row, theory, found in known if row.refused]
+    if limits and max(limits) < 1e-3:
+        yield "Steps and stiffnesses that are too large fail where theory puts their limits."
+    raised = max((found for row, _, found in known if row.parameter == "restitution τ"), default=0.0)
+    if raised:
+        yield f"With a step as long as the contact, the restitution comes out as up to {written(raised, 2)}."
+    if ends := [found for row, _, found in known if row.case.endswith("falls through")]:
+        yield f"An event loop without proof falls through the stop after {written(min(ends))} impacts."

@@ -30,7 +30,7 @@ MOST_EVENTS = 1000
 """Bound of the events of the loop: three times what e = 0.9 needs to fall through."""
 TOLERANCES = (1e-12, 1e-6)
 
-Row = partial(Limit, family="accumulation")
+entry = partial(Limit, family="accumulation")
 
 
 def ball(restitution: float) -> ImpactOscillator:
@@ -80,11 +80,11 @@ def measure(scene: Scene, quick: bool) -> Findings:
     for e in [0.3, 0.7, 0.9] if quick else [0.1, 0.3, 0.5, 0.7, 0.9, 0.99, 0.999]:
         at, count = time_of_rest(e)
         case, theory = f"bouncing ball, e = {e:g}, rests after {count} impacts", rest_time(e)
-        rests = Row(
-            method="event-driven", case=case, parameter="time of rest [s]", theory=theory, measured=at
+        rests = entry(
+            method="event-driven", case=case, parameter="time of rest", unit="s", theory=theory, measured=at
         )
         limits.append(rests)
-    row = partial(Row, method="scipy RK45, restarted at events", parameter="number of the last event [1]")
+    row = partial(entry, method="scipy RK45, restarted at events", parameter="number of the last event")
     for e in (0.7,) if quick else (0.5, 0.7, 0.9):
         for tolerance in TOLERANCES:
             how, times = event_loop(e, tolerance)

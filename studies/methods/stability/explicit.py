@@ -33,16 +33,16 @@ from studies.shell.scene import Scene, model_of
 SOFT = 1e-12
 """Stiffness of a stop that a mode of 1 rad/s, 1 kg^-0.5 does not feel: it is in flight [N/m]."""
 
-Row = partial(Limit, family="explicit")
+entry = partial(Limit, family="explicit")
 
 
 def flight(ratio: float, lagged: bool) -> Limit:
     """Largest step of one mode in flight, held off its rest position by 1 N."""
     one = np.ones(1)
     model = ModalModel(omega=one, decay_rate=2.0 * ratio * one, phi=one, participation=one)
-    case = f"one mode in flight, {'lagged' if lagged else 'centred'} damping, zeta = {ratio:g}"
+    case = f"one mode in flight, {'lagged' if lagged else 'centred'} damping, ζ = {ratio:g}"
     return limit(
-        partial(Row, case=case, parameter="h omega [1]"),
+        partial(entry, case=case, parameter="h ω"),
         model,
         2.0 * (math.sqrt(1.0 + ratio**2) - ratio) if lagged else 2.0,
         lambda h: (SOFT, CentralDifference(step=h, lagged=lagged)),
@@ -56,7 +56,7 @@ def lasting(model: ModalModel, lagged: bool) -> Limit:
         model,
         CentralDifference(step=1.0 / float(model.omega[-1]), lagged=lagged),
         family="explicit",
-        case=f"lasting contact, modes: {model.n_modes}, {damping} damping, h omega_N = 1",
+        case=f"lasting contact, modes: {model.n_modes}, {damping} damping, h ω_N = 1",
     )
 
 
@@ -86,10 +86,10 @@ def measure(scene: Scene, quick: bool) -> Findings:
     parts = (np.arange(16 if quick else 96) + 0.5) / (16 if quick else 96)
     whole = [2.0 * math.sin(0.5 * math.pi / n) for n in (3, 8)]
     short = [
-        Row(
+        entry(
             method=CentralDifference.name,
-            case=f"one short linear contact, h omega_c = {x:.4g}{words}",
-            parameter="largest E_out/E_in over the phases of the grid [1]",
+            case=f"one short linear contact, h ω_c = {x:.4g}{words}",
+            parameter="largest energy after/before over the phases",
             theory=max(rebound_ratio(x, float(s)) ** 2 for s in parts),
             measured=float(energies(x, parts).max()),
         )

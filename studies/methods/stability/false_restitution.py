@@ -32,7 +32,7 @@ from studies.shell.scene import Scene, beam_at
 
 MODES = 10
 
-Row = partial(Limit, family="false_restitution", method=GeneralisedAlpha.name, refused=False)
+entry = partial(Limit, family="false_restitution", method=GeneralisedAlpha.name, refused=False)
 
 
 def outcome(driven: ImpactOscillator, method: Integrator) -> tuple[float, float]:
@@ -67,11 +67,11 @@ def measure(scene: Scene, quick: bool) -> Findings:
     for label in IMPLICIT:
         table = arrays[label] = outcomes(driven, label, sizes * exact.contact_time, 3 if quick else 12)
         last = int(np.flatnonzero(np.isfinite(table[0]) & (sizes < 1.1))[-1])
-        row = partial(Row, case=f"{label}, elastic Hertz, h / contact time = {sizes[last]:.3g}")
+        row = partial(entry, case=f"{label}, elastic Hertz, h / contact time = {sizes[last]:.3g}")
         limits += [
-            row(parameter="restitution tau [1]", theory=exact.restitution, measured=float(table[0, last])),
+            row(parameter="restitution τ", theory=exact.restitution, measured=float(table[0, last])),
             row(
-                parameter="local restitution 2 kick(h)/kick - 1 [1]",
+                parameter="local restitution 2 kick(h)/kick − 1",
                 theory=1.0,
                 measured=float(2.0 * table[1, last] / exact.kick - 1.0),
             ),
@@ -79,22 +79,24 @@ def measure(scene: Scene, quick: bool) -> Findings:
     return limits, arrays
 
 
+HOLDS = "step: over contact time [1]; exact, and each method: restitution, then kick, at each step [1]."
+
+
 @plotting.in_house_style
 def draw(arrays: Mapping[str, np.ndarray]) -> tuple[Figure, str]:
     """Restitution and kick against the step."""
     figure, axes = plotting.new_figure(1, 2, width=plotting.PAGE, height=0.065)
-    for column, (axis, quantity) in enumerate(
-        zip(axes, ("effective restitution", "kick of mode 1"), strict=True)
-    ):
+    titles = {"effective restitution": "restitution τ", "kick of mode 1": "kick"}
+    for column, (axis, (title, quantity)) in enumerate(zip(axes, titles.items(), strict=True)):
         for number, label in enumerate(IMPLICIT):
             axis.plot(arrays["step"], arrays[label][column], **plotting.series(number), label=label)
         axis.set_xscale("log")
-        axis.axhline(arrays["exact"][column], color="0.5", linewidth=0.8, linestyle=":", label="exact")
-        plotting.panel(axis, column, "Hertz contact")
-        plotting.label(axis.xaxis, "$h$ / contact time")
+        axis.axhline(arrays["exact"][column], color="0.5", linewidth=0.8, linestyle=":", label="exact motion")
+        plotting.panel(axis, column, title)
+        plotting.label(axis.xaxis, "step / contact time")
         plotting.label(axis.yaxis, quantity)
-    axes[0].legend(loc="upper left")
+    plotting.legend_below(figure, axes, 3)
     return figure, (
-        "Restitution and kick of an elastic collision against the step, means over places of the touch in "
-        "its step; dotted: exact."
+        "Restitution and kick of an elastic collision against the step. Each is a mean over places of the "
+        "touch in its step."
     )

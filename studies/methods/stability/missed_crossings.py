@@ -30,11 +30,12 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from contact import LinearContact, NewtonRestitution, Stop
-from contact.integrators import INTEGRATORS, CentralDifference, Integrator, SampledFlight
+from contact.integrators import INTEGRATORS, CentralDifference, Integrator, MoreauJean, SampledFlight
 from studies.methods.crossings import Swing
 from studies.methods.peers import OutsideSolver
 from studies.methods.stability import Findings, Limit, threshold
 from studies.shell import plotting
+from studies.shell.columns import written
 from studies.shell.scene import Scene, model_of
 
 OVERSHOOTS = 10.0 ** -np.arange(1, 13)
@@ -46,7 +47,7 @@ and the overshoot at which it is one half to a factor exp(2/sqrt(runs)): 1.3."""
 RESTITUTION = 0.5
 """Of the stops with Newton's law [1]."""
 
-Row = partial(Limit, family="missed_crossings")
+entry = partial(Limit, family="missed_crossings")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -121,8 +122,9 @@ def of_package(scene: Scene, kind: type[Integrator], options: Mapping[str, float
     """A method of the package with those of the `options` that it knows."""
     known = {entry.name for entry in fields(kind)}  # type: ignore[arg-type]
     method = kind(**{name: value for name, value in options.items() if name in known})
+    name = "Moreau-Jean" if kind is MoreauJean else kind.name.replace("-", " ")
     return Trial(
-        label=f"{kind.name}, {options['points']} points" if "points" in known else kind.name,
+        label=f"{name}, {options['points']} points" if "points" in known else name,
         method=method,
         swing=swing_of(scene, method),
         kind="exact" if kind.certified else "step",
@@ -133,7 +135,9 @@ def of_package(scene: Scene, kind: type[Integrator], options: Mapping[str, float
 def of_scipy(scene: Scene, solver: str, tolerance: float) -> Trial:
     """A solver of SciPy, which has no theory here: its looks are as far apart as its error control allows."""
     method = OutsideSolver(solver=f"scipy {solver}", tolerance=tolerance)
-    return Trial(method=method, swing=swing_of(scene), kind="control", label=f"scipy {solver}, {tolerance:g}")
+    return Trial(
+        method=method, swing=swing_of(scene), kind="control", label=f"SciPy {solver}, {written(tolerance)}"
+    )
 
 
 def trials(scene: Scene, quick: bool) -> Iterator[Trial]:
@@ -152,7 +156,7 @@ def tried(trial: Trial, runs: int) -> tuple[list[Limit], dict[str, np.ndarray]]:
     """Rows of one method, the shares missed over `OVERSHOOTS` and their theory over `FINE`; what follows two
     decades in which nothing is seen is not tried."""
     ladder, theory = OVERSHOOTS.tolist(), None
-    row = partial(Row, method=trial.label, refused=None if trial.kind == "exact" else False)
+    row = partial(entry, method=trial.label, refused=None if trial.kind == "exact" else False)
 
     @cache
     def wrong(overshoot: float) -> float:
@@ -169,7 +173,7 @@ def tried(trial: Trial, runs: int) -> tuple[list[Limit], dict[str, np.ndarray]]:
     rows = [
         row(
             case="half of the crossings missed, one mode",
-            parameter="overshoot / gap [1]",
+            parameter="overshoot / gap",
             theory=theory,
             measured=threshold(lambda depth: wrong(depth) > 0.5, ladder, relative=0.05),
         )
@@ -178,7 +182,7 @@ def tried(trial: Trial, runs: int) -> tuple[list[Limit], dict[str, np.ndarray]]:
         rows.append(
             row(
                 case="touches invented, one mode",
-                parameter="undershoot / gap [1]",
+                parameter="undershoot / gap",
                 theory=invented(trial),
                 measured=threshold(lambda depth: wrong(-depth) > 0.0, ladder, relative=0.05),
             )
@@ -197,31 +201,31 @@ def measure(scene: Scene, quick: bool) -> Findings:
     return limits, arrays
 
 
+HOLDS = "overshoot, fine: overshoots over the gap [1]; the others: share missed there, theory at fine [1]."
+
+
 @plotting.in_house_style
 def draw(arrays: Mapping[str, np.ndarray]) -> tuple[Figure, str]:
-    """Share missed over overshoot: error control left, fixed steps right."""
-    figure, axes = plotting.new_figure(1, 2, width=plotting.PAGE, height=0.095, sharey=True)
-    overshoot, titles = arrays["overshoot"], {"control": "error control", "step": "fixed steps, samples"}
-    exact = np.max([arrays[key] for key in arrays if key.startswith("exact|")], axis=0)
-    axes[1].plot(overshoot, 100 * exact, **plotting.series(0), label="exact methods")
-    for column, (axis, (kind, title)) in enumerate(zip(axes, titles.items(), strict=True)):
-        labels = [key.split("|")[1] for key in arrays if key.startswith(f"{kind}|")]
-        for number, label in enumerate(labels, start=column):
-            axis.plot(overshoot, 100 * arrays[f"{kind}|{label}"], **plotting.points(number), label=label)
-            if f"theory|{label}" in arrays:
-                axis.plot(
-                    arrays["fine"],
-                    100 * arrays[f"theory|{label}"],
-                    color=plotting.PALETTE[number],
-                    linewidth=0.7,
-                )
-        plotting.panel(axis, column, title)
+    """Share missed over overshoot; methods that agree are drawn as rings inside one another."""
+    figure, axes = plotting.new_figure(1, 3, width=plotting.PAGE, height=0.12, sharey=True)
+    trials = [key.split("|") for key in arrays if key.startswith(("exact|", "step|", "control|"))]
+    curves = {label: arrays.get(f"theory|{label}") for _, label in trials}
+    kinds = {label: 0 if curve is None else 1 if curve[0] > 0.99 else 2 for label, curve in curves.items()}
+    titles = "search between steps", "change of sign at steps", "percussions"
+    for panel, (axis, title) in enumerate(zip(axes, titles, strict=True)):
+        shown = [(kind, label) for kind, label in trials if kinds[label] == panel]
+        for curve in [curves[label] for _, label in shown if panel][:1]:
+            axis.plot(arrays["fine"], 100.0 * np.asarray(curve), color="0.5", label="theory")
+        for number, (kind, label) in enumerate(shown):
+            look = {**plotting.points(number), "markerfacecolor": "none", "markersize": 8.0 - number}
+            share = 100.0 * arrays[f"{kind}|{label}"]
+            axis.plot(arrays["overshoot"], share, **look, clip_on=False, label=label)
+        plotting.panel(axis, panel, title)
         axis.set_xscale("log")
         axis.set_ylim(-4.0, 104.0)
         plotting.label(axis.xaxis, "overshoot / gap")
-        axis.legend(loc="upper center", bbox_to_anchor=(0.5, -0.25), ncols=2)
+        axis.legend(loc="upper center", bbox_to_anchor=(0.5, -0.25))
     plotting.label(axes[0].yaxis, "crossings missed", "%")
     return figure, (
-        "Share of the crossings missed against their depth; lines: theory of fixed steps. "
-        "The number beside a solver is its tolerance."
+        "Share of the crossings missed against their depth. The number beside a solver is its tolerance."
     )

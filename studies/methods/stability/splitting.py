@@ -29,7 +29,7 @@ def limit(model: ModalModel, angle: float) -> Limit:
         model,
         Splitting(step=angle / float(model.omega[-1])),
         family="splitting",
-        case=f"order 2, lasting contact, modes: {model.n_modes}, h omega_N = {angle:g}",
+        case=f"order 2, lasting contact, modes: {model.n_modes}, h ω_N = {angle:g}",
     )
 
 

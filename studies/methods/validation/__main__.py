@@ -17,7 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Annotated, Any
+from typing import Annotated
 
 from matplotlib.figure import Figure
 
@@ -69,9 +69,7 @@ def validation(scene: Scene, run: Run) -> Mapping[str, object]:
     run.table("sources", sources, "Numbers of each source that agree and differ.", of=Tally)
     run.table("rows", rows, "Published numbers and ours.", of=Printed)
     if rows:
-        run.figure(
-            "differences", draw(rows), "Differences from published numbers over the error of their source."
-        )
+        run.figure("differences", draw(rows), "Differences from published numbers over their error.")
         differs = sum(each.differs for each in sources)
         but = f" but {differs}" if differs else ""
         run.finding(f"All published numbers{but} agree with ours within the error of their source.")
@@ -91,14 +89,12 @@ def draw(rows: Sequence[Printed]) -> Figure:
         for place, row in enumerate(shown):
             over, look = abs(row.difference) / row.source_error, plotting.points(names.index(row.source))
             axis.plot(max(over, FLOOR), place, **look, label=row.source)
-            words = f"differs by {written(row.difference, 2)} {row.unit}" if over else "no difference"
-            if over == 0.0 or row.verdict == "differs":
-                way, side_of = (6.0, "left") if over == 0.0 else (-6.0, "right")
-                beside: Any = {"textcoords": "offset points", "va": "center", "fontsize": plotting.NOTE}
-                beside["bbox"] = {"facecolor": "white", "edgecolor": "none", "pad": 0.5}
-                axis.annotate(
-                    words.removesuffix(" 1"), (max(over, FLOOR), place), (way, 0.0), ha=side_of, **beside
+            if (far := over > 1.0) or over == 0.0:
+                words = (
+                    f"differs by {written(row.difference, 2)} {row.unit}   " if far else "   no difference"
                 )
+                look = {"fontsize": plotting.NOTE, "bbox": {"color": "white", "pad": 0.0}, "zorder": 1}
+                axis.text(max(over, FLOOR), place, words, ha="right" if far else "left", va="center", **look)
         axis.axvline(1.0, **plotting.GUIDE, label="error of the source")
         axis.set_xscale("log")
         axis.set_yticks(range(len(shown)), [row.quantity.removesuffix(", their F") for row in shown])

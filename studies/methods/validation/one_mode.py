@@ -64,26 +64,18 @@ def ghosh_simpson() -> list[Printed]:
     row, rows = partial(compared, "Ghosh and Simpson"), list[Printed]()
     for w, (published, *multipliers) in PUBLISHED.items():
         orbit = theirs = bifurcation(w)
-        error, digit, there = 1e-10, 1e-5, f"fold at ω = {w}"
+        error, digit, there, at = 1e-10, 1e-5, f"fold at ω = {w}", ""
         if w in SPEEDS:
             beside = p2(w).at_speed(1.001 * orbit.speed, orbit)
             share = 1e-5 * w * w / abs(beside.multipliers[0].real + 1)
             error = share * abs(beside.amplitude - orbit.amplitude)
             theirs = p2(w).at_excess(published / math.hypot(1 - w * w, 0.04 * w) - 1, orbit)
-            digit, there = 1e-7, f"doubling at ω = {w}, their F"
-            rows.append(row(f"impact speed, {there}", SPEEDS[w], theirs.speed, 1e-10))
+            digit, there, at = 1e-7, f"doubling at ω = {w}", ", their F"
+            rows.append(row(f"impact speed, {there}{at}", SPEEDS[w], theirs.speed, 1e-10))
         note = f"theirs has the multiplier {minus(str(multipliers[0]))}"
-        rows.append(
-            row(
-                f"amplitude, {there.removesuffix(', their F')}",
-                published,
-                orbit.amplitude * w * w,
-                error,
-                note,
-            )
-        )
+        rows.append(row(f"amplitude, {there}", published, orbit.amplitude * w * w, error, note))
         rows += [
-            row(f"multiplier {number}, {there}", one, float(ours.real), digit)
+            row(f"multiplier {number}, {there}{at}", one, float(ours.real), digit)
             for number, one, ours in zip((1, 2), multipliers, theirs.multipliers, strict=True)
         ]
     return rows
@@ -93,9 +85,7 @@ def coco() -> list[Printed]:
     """Grazing at w = 1."""
     stop = Stop(gap=1.0, law=NewtonRestitution(local_restitution=0.8))
     return [
-        compared(
-            "COCO 15.2", "amplitude at grazing, ω = 1", 0.1, driven(1.0, 0.1, stop).grazing_amplitude(), 1e-15
-        )
+        compared("COCO 15.2", "amplitude at grazing", 0.1, driven(1.0, 0.1, stop).grazing_amplitude(), 1e-15)
     ]
 
 

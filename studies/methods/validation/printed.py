@@ -12,7 +12,7 @@ class Printed:
 
     source: Annotated[str, "source"]
     quantity: Annotated[str, "quantity"]
-    unit: Annotated[str, "unit of the numbers; 1: a pure number, or in the source's own units"]
+    unit: Annotated[str, "unit; none for a pure number, and in the source's own units"]
     published: Annotated[float, "published"]
     ours: Annotated[float, "found here"]
     difference: Annotated[float, "found here less published"]
@@ -22,15 +22,9 @@ class Printed:
 
 
 def compared(
-    source: str,
-    quantity: str,
-    published: float,
-    ours: float,
-    source_error: float,
-    note: str = "",
-    unit: str = "1",
+    source: str, quantity: str, published: float, ours: float, error: float, note: str = "", unit: str = ""
 ) -> Printed:
     """A number in its `unit`, and whether it agrees within the source's error."""
     difference = ours - published
-    verdict = "agrees" if abs(difference) <= source_error else "differs"
-    return Printed(source, quantity, unit, published, ours, difference, source_error, verdict, note)
+    verdict = "agrees" if abs(difference) <= error else "differs"
+    return Printed(source, quantity, unit, published, ours, difference, error, verdict, note)

@@ -14,46 +14,41 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from statistics import median
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
 from contact import ImpactOscillator, StroboscopicMap, simulate
 from studies import letter
 from studies.methods.peers import OutsideSolver, missing_solvers
+from studies.methods.work_precision.problems import EQ_1, HERTZ
 from studies.methods.work_precision.timing import Orbit, in_turns
 from studies.shell.scene import Scene, beam_at, harmonic, model_of, single_mode_at
 from studies.shell.study import Run
 
 OURS, HEYOKA = "grazing-spring", "heyoka"
-SINGLE, BEAM, FREE = "single mode", "beam, hertz contact", "beam, no touch"
+SINGLE, BEAM, FREE = EQ_1, HERTZ, "beam, no touch"
 EXCESS, SINGLE_EXCESS, BELOW = letter.TIME_TRACE_EXCESS, 0.02, -0.02
 """F/F_g - 1 of the beam, of Eq. (1), and of a motion without a touch."""
 
-FREQUENCY = 21.50
-"""The letter's Fig. 4 [Hz]."""
+FREQUENCY, SETTLING = 21.50, 2000
+"""The letter's Fig. 4 [Hz]; drive periods before the clock starts: a free motion falls to 0.92 in each."""
 
-COUNTS, COUNTS_QUICK = (1, 2, 4, 8, 15, 20, 40), (1, 8)
-"""Numbers of modes."""
-
-TOLERANCE = 1e-7
-"""Of heyoka: the coarsest decade that brings its error with eight modes below 1e-8."""
-
-SETTLING = 2000
-"""Drive periods before the clock starts: a free motion falls to 0.92 in each."""
+COUNTS, COUNTS_QUICK, TOLERANCE = (1, 2, 4, 8, 15, 20, 40), (1, 8), 1e-7
+"""Numbers of modes; of heyoka the coarsest decade that brings its error with eight modes below 1e-8."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Cost:
     """What a drive period costs with one tool."""
 
-    case: str
-    tool: str
-    modes: int
+    case: Annotated[str, "case"]
+    tool: Annotated[str, "tool"]
+    modes: Annotated[int, "modes"]
     frequency_hz: float
     excess: float
-    us_per_period: float
-    us_per_collision: float | None = None
+    time_per_period_us: Annotated[float, "time per drive period [µs]"]
+    time_per_collision_us: Annotated[float | None, "time per collision [µs]"] = None
 
 
 def costs(scene: Scene, run: Run) -> list[Cost]:
@@ -116,8 +111,8 @@ def rows_of(case: str, oscillator: ImpactOscillator, *, quick: bool) -> list[Cos
             modes=oscillator.n_modes,
             frequency_hz=oscillator.driven.frequency,
             excess=excesses[name],
-            us_per_period=time,
-            us_per_collision=(time - spent[FREE, OURS]) / impacts if (name, tool) == touching else None,
+            time_per_period_us=time,
+            time_per_collision_us=(time - spent[FREE, OURS]) / impacts if (name, tool) == touching else None,
         )
         for (name, tool), time in spent.items()
     ]
@@ -126,11 +121,11 @@ def rows_of(case: str, oscillator: ImpactOscillator, *, quick: bool) -> list[Cos
 def ratios_of(rows: Sequence[Cost]) -> dict[str, float]:
     """heyoka's time over ours for Eq. (1) over the frequencies, and the exponent of the beam's growth between
     the two largest numbers of modes."""
-    costs = {(row.tool, row.frequency_hz): row.us_per_period for row in rows if row.case == SINGLE}
+    costs = {(row.tool, row.frequency_hz): row.time_per_period_us for row in rows if row.case == SINGLE}
     over = [cost / costs[OURS, frequency] for (tool, frequency), cost in costs.items() if tool == HEYOKA]
     named = (("least", min), ("median", median), ("largest", max))
     ratios = {f"single_mode_{name}": chosen(over) for name, chosen in named if over}
-    beam = sorted((row.modes, row.us_per_period) for row in rows if (row.case, row.tool) == (BEAM, OURS))
+    beam = sorted((row.modes, row.time_per_period_us) for row in rows if (row.case, row.tool) == (BEAM, OURS))
     for (few, low), (many, high) in list(pairwise(beam))[-1:]:
         ratios["hertz_growth_with_modes"] = math.log(high / low) / math.log(many / few)
     return ratios

@@ -1,8 +1,4 @@
-"""Figure of the work-precision study.
-
-Methods differ in colour and marker, families in the line: solid for fixed steps, dashed for outside solvers;
-the exact method is one large point.
-"""
+"""Figure of the study: methods differ in colour and marker, families in the line, the exact one is a star."""
 
 from __future__ import annotations
 
@@ -11,9 +7,10 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.figure import Figure
 
-from studies.methods.work_precision.measures import Reference, Row
+from studies.methods.work_precision.measures import Point, Reference
 from studies.methods.work_precision.methods import EXACT, OUTSIDE, PERIODIC, STEPPED
 from studies.shell import plotting
 from studies.shell.plotting import MARKERS, PALETTE
@@ -25,7 +22,7 @@ COLOURS = (*PALETTE[1:7], "0.45")
 """Seven against eight markers: no two methods of a family look alike."""
 
 
-def styles_of(rows: Sequence[Row]) -> dict[str, dict[str, Any]]:
+def styles_of(rows: Sequence[Point]) -> dict[str, dict[str, Any]]:
     """Colour, marker and line of each method, the same in every panel, by family."""
     found: dict[str, dict[str, Any]] = {
         row.method: {"marker": "*", "color": PALETTE[0], "linestyle": "none", "markersize": 9, "zorder": 5}
@@ -41,32 +38,34 @@ def styles_of(rows: Sequence[Row]) -> dict[str, dict[str, Any]]:
                 "linestyle": line,
                 "linewidth": 0.8,
                 # methods that agree are drawn on top of each other, the larger ones first
-                "markersize": 3.2 if outside else 5.0 if i % 2 == 0 else 2.6,
+                "markersize": 3.2 if outside else 6.4 - 0.5 * i,
                 "markerfacecolor": "white" if outside else colour,
             }
     return found
 
 
 @plotting.in_house_style
-def draw_errors(rows: Sequence[Row], references: Sequence[Reference]) -> Figure:
-    """Error of mode 1 against time, one panel a problem."""
-    figure, axes = plotting.new_figure(3, 2, width=plotting.PAGE, height=0.25, squeeze=False)
-    styles = styles_of(rows)
+def draw_errors(rows: Sequence[Point], references: Sequence[Reference]) -> Figure:
+    """Error of mode 1 against time, one panel a problem; the legend is in the order of families."""
+    figure, axes = plotting.new_figure(2, 2, width=plotting.PAGE, height=0.185, squeeze=False)
+    styles, drawn = styles_of(rows), dict[str, Artist]()
     for number, (reference, axis) in enumerate(zip(references, axes.flat, strict=False)):
         problem = reference.problem
         for name, style in styles.items():
             mine = [row for row in rows if (row.problem, row.method) == (problem.name, name)]
-            points = [(row.us_per_period, row.error) for row in mine if row.error is not None]
+            points = [(row.time_per_period_us, row.error) for row in mine if row.error is not None]
             if points:
                 cost, error = np.array(points).T
-                axis.plot(cost, np.maximum(error, FLOOR), label=name, **style)
+                (drawn[name],) = axis.plot(cost, np.maximum(error, FLOOR), label=name, clip_on=False, **style)
         axis.set_xscale("log")
         axis.set_yscale("log")
-        own = math.ceil(math.log10(reference.own_error))
-        plotting.panel(axis, number, f"{problem.title}\nreference good to 10$^{{{own}}}$")
+        low, high = np.log10(axis.get_xlim())
+        axis.set_xlim(10.0 ** math.floor(low), 10.0 ** math.ceil(high))  # a label at both ends
+        plotting.panel(axis, number, problem.title)
         plotting.label(axis.xaxis, f"time per {problem.unit}", "µs")
         plotting.label(axis.yaxis, "error of mode 1")
     for axis in axes.flat[len(references) :]:
         axis.set_axis_off()
-    plotting.legend_below(figure, axes.flat, 4)
+    named = {name: drawn[name] for name in styles if name in drawn}
+    figure.legend(named.values(), named.keys(), loc="outside lower center", ncols=4)
     return figure

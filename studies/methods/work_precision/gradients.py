@@ -15,6 +15,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
+from typing import Annotated
 
 import numpy as np
 from mpmath import matrix, mp, mpf
@@ -36,12 +37,12 @@ POLISHED = 3
 
 @dataclass(frozen=True, kw_only=True)
 class Gradient:
-    """`setting`: the step. Without an error it failed, as impacts are lost or added by the step."""
+    """A way to the gradient, at a step."""
 
-    method: str
-    setting: float | None
-    error: float | None
-    milliseconds: float
+    method: Annotated[str, "method"]
+    setting: Annotated[float | None, "step of each parameter; relative to it"]
+    error: Annotated[float | None, "error of the gradient; none where the step loses or adds an impact"]
+    time_ms: Annotated[float, "time of a gradient [ms]"]
 
 
 def motion_of(oscillator: ImpactOscillator) -> tuple[State, Array, Array]:
@@ -109,7 +110,7 @@ def gradients(oscillator: ImpactOscillator) -> list[Gradient]:
                 method=method,
                 setting=setting,
                 error=error if np.isfinite(error) else None,
-                milliseconds=1e-3 * timed(compute, REPEATS),
+                time_ms=1e-3 * timed(compute, REPEATS),
             )
         )
 

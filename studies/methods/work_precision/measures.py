@@ -1,17 +1,14 @@
 """Errors and costs of every method at every setting.
 
-    error         mode 1 at the probe, past the collision: distance of (q/size, q'/speed) from the reference
-    missed        share of crossings of known depth that are not seen, each from `PHASES` starts with the free
-                  modes of the problem (``studies.methods.crossings``)
-    us_per_period processor time of the thread per drive period along the settled orbit, the median of warm
-                  runs long enough that the clock and the call do not count (the swung beam's 12 ms cannot be
-                  made longer: there the call, 0.1 ms, is part of the cost)
+    error     mode 1 at the probe, past the collision: distance of (q/size, q'/speed) from the reference
+    missed    share of crossings of known depth that are not seen, each from `PHASES` starts with the free
+              modes of the problem (``studies.methods.crossings``)
+    time      processor time of the thread, along the settled orbit; the median of warm runs long enough that
+              the clock and the call do not count
 
-All methods here use one thread, whose time is on a free core the time that passes, and does not grow on a
-busy one. None stands for what does not exist (no drive). A setting that fails is a row with the sentence of
-its failure; one whose drive period is expected to take longer than a bound, from the setting before it, is a
-row that says so. For a periodic motion the error is that of mode 1 at a strobe in flight, the cost the time
-that finds it from the state 40 periods after rest. The reference has settled and errs by what does not close.
+All methods here use one thread, whose time does not grow on a busy core. For a periodic motion the error is
+that of mode 1 at a strobe in flight; the cost is the time that finds it from the state 40 periods after rest.
+The reference has settled and errs by what does not close.
 """
 
 from __future__ import annotations
@@ -23,6 +20,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from decimal import Decimal
 from functools import partial
+from typing import Annotated
 
 import numpy as np
 
@@ -36,20 +34,12 @@ from studies.methods.work_precision.problems import Problem, driven_problem, two
 from studies.methods.work_precision.reference import DIGITS, extended_motion
 from studies.methods.work_precision.timing import timed
 
-REPEATS = 9
-"""Timed runs of a point."""
+REPEATS, SLOWEST = 9, 0.5
+"""Timed runs of a point; longest drive period of a setting that is run [s]: errors and cost take twenty."""
 
-SLOWEST = 0.5
-"""Longest time for one drive period of a setting that is run [s]: its errors and its cost take twenty."""
-
-LONG_ENOUGH = 0.01
-"""Length of a timed run [s], a hundred times the call's own."""
-
-MOST_PERIODS = 512
-"""Bound of the periods of a timed run."""
-
-PATIENCE = 0.4
-"""Time spent on the repetitions of one point at most [s]; a slower run is timed once."""
+LONG_ENOUGH, MOST_PERIODS, PATIENCE = 0.01, 512, 0.4
+"""Length of a timed run [s], a hundred times the call's own; bound of its periods; time spent on repetitions
+of one point at most [s]: a slower run is timed once."""
 
 SAMPLES = {5: 1024, 11: 1024, 21: 1024, 41: 4096, 81: 16384, 161: 65536}
 """Orders of harmonic balance; samples grow with their square, so that both errors fall together."""
@@ -65,20 +55,22 @@ RINGING = 2e-3
 
 
 @dataclass(frozen=True, kw_only=True)
-class Row:
-    """A method at a setting on a problem."""
+class Point:
+    """A method at a setting: its error and its cost on a problem, or why there is none."""
 
-    problem: str
-    method: str
-    family: str
-    setting: str
-    value: float | None
-    """Step [s], spacing of samples over the period, or tolerance [1]."""
-    certified: bool
-    error: float | None = None
-    missed: float | None = None
-    us_per_period: float | None = None
-    failed: str = ""
+    problem: Annotated[str, "problem"]
+    method: Annotated[str, "method"]
+    family: Annotated[str, "family of methods"]
+    setting: Annotated[str, "setting"]
+    value: Annotated[float | None, "value of the setting; step, spacing of samples in periods, or tolerance"]
+    unit: Annotated[str, "unit of this value"] = "1"
+    certified: Annotated[bool, "whether it proves that it misses no touch"]
+    error: Annotated[float | None, "error of mode 1 past the first collision; in its motion at grazing"] = (
+        None
+    )
+    missed: Annotated[float | None, "share of the shallow crossings that are missed"] = None
+    time_per_period_us: Annotated[float | None, "time per drive period [µs]; of two masses, per orbit"] = None
+    failed: Annotated[str, "why there is no error"] = ""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -133,7 +125,7 @@ def missed_share(problem: Problem, method: Integrator) -> float | None:
 
 
 def cost_of(problem: Problem, method: Integrator, repeats: int = REPEATS) -> float:
-    """Time per drive period of the settled orbit [us]."""
+    """Time per drive period of the settled orbit [µs]."""
     periods = problem.cost_periods
 
     def once(count: int) -> float:
@@ -151,17 +143,18 @@ def cost_of(problem: Problem, method: Integrator, repeats: int = REPEATS) -> flo
 
 def rows_of(
     reference: Reference, sweep: Sweep, *, slowest: float = SLOWEST, repeats: int = REPEATS
-) -> list[Row]:
+) -> list[Point]:
     """One row for each setting of a sweep; settings that would take longer than `slowest` [s] are not run."""
     rows, expected = [], 0.0
     for setting in sweep.settings:
         method = setting.method
-        row = Row(
+        row = Point(
             problem=reference.problem.name,
             method=sweep.label,
             family=sweep.family,
             setting=setting.text,
             value=setting.value,
+            unit=setting.unit,
             certified=method.certified,
         )
         if expected > slowest:
@@ -174,7 +167,7 @@ def rows_of(
                     row,
                     error=error_of(reference, method),
                     missed=missed_share(reference.problem, method),
-                    us_per_period=(cost := cost_of(reference.problem, method, repeats)),
+                    time_per_period_us=(cost := cost_of(reference.problem, method, repeats)),
                 )
                 expected = 1e-6 * cost * sweep.growth
             except Exception as error:  # an outside solver may raise anything, and it is a result
@@ -183,13 +176,13 @@ def rows_of(
     return rows
 
 
-def orbit_rows(*, quick: bool, repeats: int) -> tuple[Reference, list[Row]]:
+def orbit_rows(*, quick: bool, repeats: int) -> tuple[Reference, list[Point]]:
     """The reference of the two masses; rows of harmonic balance, shooting and settling."""
     problem = replace(driven_problem("two masses", "two masses, an orbit", two_masses(0.635)), unit="orbit")
     o, settled, start = problem.oscillator, problem.cost_start, simulate(problem.oscillator, periods=40).end
     reference = reference_of(replace(problem, start=settled, probe=problem.period))
     found = reference.error_of(settled.displacement[0], settled.velocity[0])  # what it fails to close by
-    reference, rows = replace(reference, own_error=found), list[Row]()
+    reference, rows = replace(reference, own_error=found), list[Point]()
 
     def balance(order: int) -> State:
         found = balanced(o, order, SAMPLES[order], start)
@@ -204,7 +197,7 @@ def orbit_rows(*, quick: bool, repeats: int) -> tuple[Reference, list[Row]]:
     jobs = [("harmonic balance", f"order {n}", partial(balance, n)) for n in SAMPLES if n < 81 or not quick]
     jobs += [("settling", f"{n} periods", partial(later, n)) for n in SETTLING]
     for label, text, work in [*jobs, ("shooting", "1e-12", partial(shot))]:
-        row = Row(
+        row = Point(
             problem=problem.name,
             method=label,
             family=PERIODIC,
@@ -215,13 +208,13 @@ def orbit_rows(*, quick: bool, repeats: int) -> tuple[Reference, list[Row]]:
         try:
             end = work()
             error = reference.error_of(end.displacement[0], end.velocity[0])
-            rows.append(replace(row, error=error, us_per_period=timed(work, repeats)))
+            rows.append(replace(row, error=error, time_per_period_us=timed(work, repeats)))
         except ContactError as failure:
             rows.append(replace(row, failed=str(failure)))
     return reference, rows
 
 
-def cheapest(rows: Sequence[Row], target: float) -> Row | None:
+def cheapest(rows: Sequence[Point], target: float) -> Point | None:
     """The row of least cost with an error of at most `target`; None if there is none."""
     known = [row for row in rows if row.error is not None and row.error <= target]
-    return min(known, key=lambda row: (row.us_per_period, row.error), default=None)
+    return min(known, key=lambda row: (row.time_per_period_us, row.error), default=None)

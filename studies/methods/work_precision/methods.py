@@ -42,21 +42,22 @@ STEPS: dict[str, Callable[[float], Integrator]] = {
     "central difference": lambda h: CentralDifference(step=h),
     "splitting, order 2": lambda h: Splitting(step=h, order=2),
     "splitting, order 4": lambda h: Splitting(step=h, order=4),
-    "Newmark, 1/4, 1/2": lambda h: GeneralisedAlpha.newmark(step=h),
-    "HHT, alpha 0.05": lambda h: GeneralisedAlpha.hht(step=h, alpha=0.05),
-    "generalised alpha, rho 0.8": lambda h: GeneralisedAlpha.with_dissipation(step=h, rho=0.8),
-    "Moreau-Jean, theta 1/2": lambda h: MoreauJean(step=h),
-    "nonsmooth generalised alpha, rho 0.8": lambda h: NonsmoothGeneralisedAlpha(step=h, rho=0.8),
+    "Newmark, β 1/4, γ 1/2": lambda h: GeneralisedAlpha.newmark(step=h),
+    "HHT, α 0.05": lambda h: GeneralisedAlpha.hht(step=h, alpha=0.05),
+    "generalised α, ρ 0.8": lambda h: GeneralisedAlpha.with_dissipation(step=h, rho=0.8),
+    "Moreau-Jean, θ 1/2": lambda h: MoreauJean(step=h),
+    "nonsmooth generalised α, ρ 0.8": lambda h: NonsmoothGeneralisedAlpha(step=h, rho=0.8),
 }
 """Methods with a step [s] by their labels."""
 
 
 class Setting(NamedTuple):
-    """One point of a sweep: step [s], samples' spacing over the period or tolerance; its text; the method."""
+    """One point of a sweep: step, samples' spacing over the period or tolerance; text; method; unit."""
 
     value: float | None
     text: str
     method: Integrator
+    unit: str = "1"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -87,7 +88,7 @@ def sweeps_for(problem: Problem, *, quick: bool = False) -> list[Sweep]:
     finest = FINEST_HARD if problem.contact_time == 0.0 else FINEST
     steps = (coarsest_step(problem) * 4.0 ** -np.arange(0, finest, stride)).tolist()
     for label, made in STEPS.items():
-        add(label, STEPPED, 4.0, [Setting(h, f"step {h:.3g} s", made(h)) for h in steps])
+        add(label, STEPPED, 4.0, [Setting(h, f"step {h:.3g} s", made(h), "s") for h in steps])
     add(
         SAMPLED,
         STEPPED,
@@ -96,7 +97,7 @@ def sweeps_for(problem: Problem, *, quick: bool = False) -> list[Sweep]:
     )
     for label in installed_solvers():
         add(
-            label,
+            label.replace("scipy", "SciPy"),
             OUTSIDE,
             3.0,
             [

@@ -1,8 +1,8 @@
 """The problems on which methods are compared, each with a motion for the errors and one for the cost.
 
-    single mode     Eq. (1) of the letter with the hard wall, tau, mu and T of the scene
-    linear          the scene's beam with a linear contact that lasts as long as Hertz's
-    hertz           the scene's beam with the scene's Hertz contact
+    Eq. (1)         Eq. (1) of the letter with the hard wall, tau, mu and T of the scene
+    beam, linear    the scene's beam with a linear contact that lasts as long as Hertz's
+    beam, Hertz     the scene's beam with the scene's Hertz contact
     two masses      example 03 of NLvib (M. Krack and J. Gross, Harmonic Balance for Nonlinear Vibration
                     Problems, Springer 2019; maltekrack/NLvib at 69598c5): a periodic motion, by harmonic
                     balance, shooting and settling
@@ -38,6 +38,8 @@ from studies.shell.scene import Scene, beam_at, hertz_of, single_mode_at
 
 FREQUENCY, EXCESS = 21.50, 0.013
 """Drive frequency [Hz] and F/F_g - 1 of the letter's Fig. 4."""
+
+EQ_1, HERTZ = "Eq. (1)", "beam, Hertz contact"
 
 MODES = 8
 """Modes of the beam: the highest, at 3.3 kHz, swings a fifth of a turn during a contact."""
@@ -143,7 +145,7 @@ def problems_of(scene: Scene, modes: int = MODES) -> list[Problem]:
     beam = scene.replace({"modes.count": modes})
     one = single_mode_at(scene, FREQUENCY).with_excess(EXCESS)
     return [
-        driven_problem("single mode", "Eq. (1), hard wall", one),
-        driven_problem("linear", f"beam, {modes} modes, linear contact", linear_beam(beam)),
-        driven_problem("hertz", f"beam, {modes} modes, Hertz contact", hertz_beam(beam)),
+        driven_problem(EQ_1, "Eq. (1), hard wall", one),
+        driven_problem("beam, linear contact", f"beam, {modes} modes, linear contact", linear_beam(beam)),
+        driven_problem(HERTZ, f"beam, {modes} modes, Hertz contact", hertz_beam(beam)),
     ]
