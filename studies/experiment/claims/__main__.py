@@ -9,10 +9,9 @@ Claims (letter 1996), for the Nordmark map (Eqs. (2), (3)), for Eq. (1) and for 
                    f T each spring has just above grazing the period that the map has as rho -> 0+
     period_adding  "an infinite series of period addings for the overdamped oscillator"
 
-Equations: fold of p_m and its first bifurcation in closed form, of the map and of Eq. (1)
-(contact.maps.nordmark_orbits, MaximalFamily; x'' + mu x' + omega^2 x = ..., x' -> -tau x' at the wall); the
-born period of the beams by following their motion; p_m of the overdamped map, in the windows of rho of
-W. Chin, E. Ott, H. E. Nusse, C. Grebogi, Phys. Rev. E 50 (1994) 4427.
+Fold of p_m and its first bifurcation are closed forms (contact.maps.nordmark_orbits, MaximalFamily); the born
+periods of the beams come from their motion; p_m of the overdamped map from the windows of rho of W. Chin,
+E. Ott, H. E. Nusse, C. Grebogi, Phys. Rev. E 50 (1994) 4427.
 
 Run:     python -m studies claims [--positions N]
 Writes:  loss.csv, universality.csv, and the figure loss
@@ -135,10 +134,8 @@ def energy_loss(scene: Scene, run: Run) -> Mapping[str, object]:
 def universality(scene: Scene, run: Run, *, positions: int) -> Mapping[str, object]:
     """Born periods of several springs beside the bands of the map: compute, store and judge.
 
-    The claim is about the limit rho -> 0+. Over whole bands secondary bifurcations come before the born
-    excess. It is therefore judged in the quarter of each band next to its upper edge, where the hysteresis is
-    small. Where a spring disagrees there, it is judged again at a sixteenth of the excess. A cell without a
-    period counts as disagreement.
+    Over whole bands secondary bifurcations come before the born excess. The claim is therefore judged next to
+    the upper edges, where the hysteresis is small, and where a spring disagrees again at a sixteenth of it.
     """
     rows, excess = born_everywhere(scene, run, positions), scene.scan.born_excess
     words = "Periods that begin at grazing on several springs, and in the map."
