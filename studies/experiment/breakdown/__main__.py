@@ -156,11 +156,6 @@ def tell(run: Run, beam: Outcome, found: Outcome | None, own: Island) -> None:
         run.finding(f"{words} {written(own.end, 2)}.")
 
 
-def on_p3(outcome: Outcome) -> str:
-    """The part of the downward scan on p3."""
-    return f"{written(outcome.p3_first or 0.0)} to {written(outcome.p3_last or 0.0)}"
-
-
 def judge(
     run: Run, map_period: int, outcomes: Sequence[Outcome], found: Outcome | None, islands: Sequence[Island]
 ) -> None:
@@ -189,7 +184,7 @@ def judge(
     run.verdict(
         "breakdown_p3",
         "differs" if ends is None else "agrees" if ends is beam else "in part",
-        found=f"beam: {'not so' if ends is None else on_p3(ends)}",
+        found=f"beam: {'not so' if ends is None else 'p3 at the end of the downward scan'}",
         note="no downward scan ends in p3" if ends is None else "" if ends is beam else note,
     )
     spans = [f"{written(i.fold_p3, 3)} to {written(i.end, 3)} at τ = {i.restitution:g}" for i in islands]

@@ -180,9 +180,7 @@ def cut(scene: Scene, run: Run, f: float) -> Mapping[str, object]:
     spans = [f"{TITLES[name]}: {' to '.join(written(e, 3) for e in at)}" for name, at in ends.items()]
     if "beam" in ends and ends["beam"][0] > 0.0:
         first = written(100.0 * ends["beam"][0], 2)
-        run.finding(
-            f"As the amplitude is raised through grazing, the beam is first chaotic {first} % above it."
-        )
+        run.finding(f"The smallest amplitude at which the beam is chaotic lies {first} % above grazing.")
     run.verdict(
         "chaos",
         "agrees" if spans else "differs",
@@ -200,9 +198,7 @@ def basins(scene: Scene, run: Run, f: float, side: int) -> Mapping[str, object]:
 
     plane = settled.plane_of(scene, f, side)
     leads = np.array(run.map(plane.line, plane.velocity.tolist(), "rows of the basins"))
-    holds = (
-        "Starts, x [m] and velocity [m/s], and the period each leads to (0: another, -1: behind the stop)."
-    )
+    holds = "Starts, x [m] and velocity [m/s]; the period each leads to (0: another, -1: behind the stop)."
     run.arrays("basins", holds, x=plane.x, velocity=plane.velocity, leads=leads)
     run.figure("basins", figure.draw_basins(plane, leads, f), figure.BASINS)
     period, shares = plane.period, settled.parts(leads, plane.period)

@@ -102,9 +102,7 @@ def energy_loss(scene: Scene, run: Run) -> Mapping[str, object]:
     names = {"map": "hysteresis of the map", "eq1": "of Eq. (1)", "rho": "|ρ_m| of the map"}
     falling, other = (" and ".join(names[n] for n in found if found[n] is good) for good in (True, False))
     but = "" if both else ", but not at every frequency"
-    run.finding(
-        f"The more energy an impact takes, the narrower is the hysteresis of the map and of Eq. (1){but}."
-    )
+    run.finding(f"The more energy an impact takes, the less is the hysteresis of map and Eq. (1){but}.")
     note = "" if found["rho"] else "the hysteresis in F falls; |ρ_m| rises, because ρ per F falls faster"
     run.verdict(
         "loss",
@@ -147,7 +145,7 @@ def universality(scene: Scene, run: Run, *, positions: int) -> Mapping[str, obje
     }
     top = [row for row in rows if row.next_to_edge]
     odd = [row for row in top if not row.agrees]
-    holds = all(row.closer in (row.map, row.also) for row in odd)
+    holds = all(row.has(row.closer) for row in odd)
     if top and not failed:
         share = written(100.0 * (1.0 - len(odd) / len(top)), 3)
         words = "Where the hysteresis is small, the map gives the period just above grazing for"

@@ -7,8 +7,8 @@ occur in "bands in the (alpha, gamma) parameter plane ... crossed approximately 
 boundary ... there is no hysteresis", which grows "towards ... the lower-lying m - 1".
 
 Computed for m = 3 ... 10 from 19.6 to 23.8 Hz: F_m/F_g - 1, where the p_m orbit ends in a downward scan, in
-the nine descriptions of studies.experiment.hysteresis.model. Neighbours in their chain differ in one thing, so
-that the beam's hysteresis over the map's is a product of causes:
+the nine descriptions of studies.experiment.hysteresis.model. Neighbours in their chain differ in one thing,
+so that the beam's hysteresis over the map's is a product of causes:
 
     F_beam/F_map = truncation of the map * size of the kick * its change with velocity * delay
                    * higher modes in the flight * ringing met by the next collision
