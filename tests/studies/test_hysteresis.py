@@ -6,10 +6,12 @@ import math
 
 import numpy as np
 import pytest
+from matplotlib.text import Text
 
 from contact import NewtonRestitution, StroboscopicMap, maximal_period
 from contact.orbits import born, orbit_end
-from studies.experiment.hysteresis.model import CAUSES, CHAIN, folds_at, inside_band, path_of
+from studies.experiment.hysteresis.figure import draw_curves
+from studies.experiment.hysteresis.model import CAUSES, CHAIN, branch_of, folds_at, inside_band, path_of
 from studies.physics.descriptions import falls
 from studies.shell.scene import band_of, beam_at, model_of, single_mode_of
 
@@ -59,6 +61,23 @@ def test_the_hysteresis_starts_from_zero_at_the_upper_edge_of_each_band(letter_s
         assert max(rows[-1].map, rows[-1].eq1) < 1e-12
         assert falls([row.map for row in rows]) and falls([row.eq1 for row in rows])
     assert {3, 4, 5, 6, 8, 11} <= {maximal_period(place) for place in path_of(letter_scene)}
+
+
+def test_the_branch_has_its_least_amplitude_at_the_fold_and_is_stable_above(letter_scene, fold, beam):
+    rows = branch_of(letter_scene, 21.50, 4, beam.model)
+    least = min(rows, key=lambda row: row.excess)
+    assert least.excess == pytest.approx(fold[0].beam, rel=1e-9)
+    assert any(row.event == "fold" and row.speed == pytest.approx(least.speed, rel=1e-6) for row in rows)
+    assert all(row.stable for row in rows if row.speed > 1.01 * least.speed)
+    assert not any(row.stable for row in rows if 0.1 < row.speed / least.speed < 0.99)
+
+
+def test_the_figure_of_another_spring_bears_no_mark_of_the_letter(letter_scene, fold):
+    for letters in (True, False):
+        texts = [
+            text.get_text() for text in draw_curves(letter_scene, [fold[0]], letters=letters).findobj(Text)
+        ]
+        assert any("letter" in text for text in texts) == letters
 
 
 def test_small_form(run_study):

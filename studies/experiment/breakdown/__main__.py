@@ -8,13 +8,11 @@ born at rho = 0".
 
 Computed:
 
-    Eq. (1)     upward and downward scan, and the island of p3 and chaos below grazing, for several
-                restitutions tau: it begins at the fold of p3 (closed form) and is followed upwards, the state
-                carried along, until the motion is free of impacts
-    beam        the scans of the scene's spring with its period and damping fitted again to T and mu
-    search      the born period over what is not printed: mass of ball and mount, damping of the modes above
-                the first
-    found       the scans of the cell that departs least from the scene, has period 6, and ends on p3
+    Eq. (1)     both scans, and for several restitutions the island of p3 and chaos below grazing: from the
+                fold of p3 (closed form) upwards until the motion is free of impacts
+    beam        both scans of the scene's spring, fitted again to T and mu
+    search      the born period over what is not printed: mass of ball and mount, damping of higher modes
+    found       the scans of the cell with period 6 that departs least from the scene and ends on p3
 
 Run:     python -m studies breakdown [--full] [--quick]     --full takes some minutes
 Writes:  outcomes.csv (a row a beam), islands.csv, born_period.csv (a row a cell of the search),
@@ -158,11 +156,6 @@ def tell(run: Run, beam: Outcome, found: Outcome | None, own: Island) -> None:
         run.finding(f"{words} {written(own.end, 2)}.")
 
 
-def on_p3(outcome: Outcome) -> str:
-    """The part of the downward scan on p3."""
-    return f"{written(outcome.p3_first or 0.0)} to {written(outcome.p3_last or 0.0)}"
-
-
 def judge(
     run: Run, map_period: int, outcomes: Sequence[Outcome], found: Outcome | None, islands: Sequence[Island]
 ) -> None:
@@ -191,7 +184,7 @@ def judge(
     run.verdict(
         "breakdown_p3",
         "differs" if ends is None else "agrees" if ends is beam else "in part",
-        found=f"beam: {'not so' if ends is None else on_p3(ends)}",
+        found=f"beam: {'not so' if ends is None else 'p3 at the end of the downward scan'}",
         note="no downward scan ends in p3" if ends is None else "" if ends is beam else note,
     )
     spans = [f"{written(i.fold_p3, 3)} to {written(i.end, 3)} at τ = {i.restitution:g}" for i in islands]

@@ -2,26 +2,22 @@
 
 Claim (letter 1996, Figs. 1 to 3, for a whole plane): below grazing an orbit p_m coexists with the motion
 without impacts down to its fold; at grazing the period follows the bands of the map; above it periods
-double, and chaos lies between. Computed on a grid refined around grazing: at each frequency the amplitude is
-raised and lowered again with the state carried along, and each cell gets the period (up to 64) and the
-impacts of the orbit on which the motion settles (contact.orbits.AmplitudeScan). Drawn over it: the band
-edges of the map and the exact folds.
+double, and chaos lies between. At each frequency the amplitude is raised and lowered again with the state
+carried along; each cell gets period (up to 64) and impacts of the orbit on which the motion settles.
 
 At one drive frequency, --cut-hz, two more questions are asked of Eq. (1) and of the beam with its N modes:
 
-    cut      period, impacts and largest Lyapunov exponent of the settled motions: periodic or chaotic
+    cut      the largest Lyapunov exponent of the settled motions: periodic or chaotic
     basins   for Eq. (1) below grazing: the orbit to which each start on the strobe plane leads
 
     python -m studies chart                          Eq. (1), 400 x 400, both directions
     python -m studies chart --model beam             the beam of the scene, 120 x 120
     python -m studies chart --executor processes     or dask://host:port, for a cluster
 
-Every finished column is a file in MODEL-NxM (``studies.shell.sweep``); the same command goes on where the
-last one was stopped, in whatever way; --fresh begins anew.
+Every finished column is kept (``studies.shell.sweep``): the same command goes on; --fresh begins anew.
 
 Run:     python -m studies chart [--model beam] [--quick]
-Writes:  chart_MODEL.npz (cells), folds_MODEL.csv, chart_MODEL.png; cut.csv, cut.npz,
-         cut.png; basins.npz, basins.png
+Writes:  chart_MODEL.npz (cells), folds_MODEL.csv; cut.csv, cut.npz; basins.npz; and the figures of these
 """
 
 from __future__ import annotations
@@ -147,10 +143,7 @@ def drawn(
         folds = folds_of_single_mode(oscillator, frequencies, lowest)
     else:
         folds = folds_of_beam(oscillator, edges, frequencies, lowest)
-    holds = (
-        "Period (0: none), impacts in a period and drive periods spent (-1: failed) by scan (upward first), "
-    )
-    holds += "drive frequency [Hz] and excess [1]."
+    holds = "Period (0: none), impacts, drive periods spent (-1: failed) by scan, frequency [Hz], excess [1]."
     run.arrays(f"chart_{model}", holds, frequency_hz=frequencies, excess=excesses, **cells)
     run.table(f"folds_{model}", folds, "Exact folds of p_m orbits with one impact.", of=Fold, show=())
     run.figure(f"chart_{model}", draw(plane, cells, edges, folds, TITLES[model]), CAPTION)
@@ -187,9 +180,7 @@ def cut(scene: Scene, run: Run, f: float) -> Mapping[str, object]:
     spans = [f"{TITLES[name]}: {' to '.join(written(e, 3) for e in at)}" for name, at in ends.items()]
     if "beam" in ends and ends["beam"][0] > 0.0:
         first = written(100.0 * ends["beam"][0], 2)
-        run.finding(
-            f"As the amplitude is raised through grazing, the beam is first chaotic {first} % above it."
-        )
+        run.finding(f"The smallest amplitude at which the beam is chaotic lies {first} % above grazing.")
     run.verdict(
         "chaos",
         "agrees" if spans else "differs",
@@ -207,8 +198,7 @@ def basins(scene: Scene, run: Run, f: float, side: int) -> Mapping[str, object]:
 
     plane = settled.plane_of(scene, f, side)
     leads = np.array(run.map(plane.line, plane.velocity.tolist(), "rows of the basins"))
-    holds = "Starts, x [m] across and velocity [m/s] down, and the period of the orbit to which each leads "
-    holds += "(0: something else, -1: behind the stop)."
+    holds = "Starts, x [m] and velocity [m/s]; the period each leads to (0: another, -1: behind the stop)."
     run.arrays("basins", holds, x=plane.x, velocity=plane.velocity, leads=leads)
     run.figure("basins", figure.draw_basins(plane, leads, f), figure.BASINS)
     period, shares = plane.period, settled.parts(leads, plane.period)

@@ -1,10 +1,8 @@
 """A cut through the plane at one drive frequency: period, impacts and Lyapunov exponent over the amplitude.
 
-The amplitude is raised and lowered again, and the state is carried along.
-
-lyapunov_map     largest Lyapunov exponent per drive period, from the Jacobians of the period map
-kind             periodic, chaotic (exponent above zero by three standard errors), not settled (below zero
-                 by as much: a long period or a slow transient), or undecided
+The amplitude is raised and lowered again, and the state is carried along. A motion without a period is
+chaotic if its exponent is above zero by three standard errors, not settled (a long period or a slow
+transient) if it is below by as much, otherwise undecided.
 
 Then basins of attraction of Eq. (1) on the strobe plane, between the fold of p_m and grazing. The starts are
 a grid in x/gap and x'/(2 pi f gap). A motion has reached an orbit when a strobe lies within `NEAR` of one of

@@ -9,10 +9,9 @@ Claims (letter 1996), for the Nordmark map (Eqs. (2), (3)), for Eq. (1) and for 
                    f T each spring has just above grazing the period that the map has as rho -> 0+
     period_adding  "an infinite series of period addings for the overdamped oscillator"
 
-Equations: fold of p_m and its first bifurcation in closed form, of the map and of Eq. (1)
-(contact.maps.nordmark_orbits, MaximalFamily; x'' + mu x' + omega^2 x = ..., x' -> -tau x' at the wall); the
-born period of the beams by following their motion; p_m of the overdamped map, in the windows of rho of
-W. Chin, E. Ott, H. E. Nusse, C. Grebogi, Phys. Rev. E 50 (1994) 4427.
+Fold of p_m and its first bifurcation are closed forms (contact.maps.nordmark_orbits, MaximalFamily); the born
+periods of the beams come from their motion; p_m of the overdamped map from the windows of rho of W. Chin,
+E. Ott, H. E. Nusse, C. Grebogi, Phys. Rev. E 50 (1994) 4427.
 
 Run:     python -m studies claims [--positions N]
 Writes:  loss.csv, universality.csv, and the figure loss
@@ -103,9 +102,7 @@ def energy_loss(scene: Scene, run: Run) -> Mapping[str, object]:
     names = {"map": "hysteresis of the map", "eq1": "of Eq. (1)", "rho": "|ρ_m| of the map"}
     falling, other = (" and ".join(names[n] for n in found if found[n] is good) for good in (True, False))
     but = "" if both else ", but not at every frequency"
-    run.finding(
-        f"The more energy an impact takes, the narrower is the hysteresis of the map and of Eq. (1){but}."
-    )
+    run.finding(f"The more energy an impact takes, the less is the hysteresis of map and Eq. (1){but}.")
     note = "" if found["rho"] else "the hysteresis in F falls; |ρ_m| rises, because ρ per F falls faster"
     run.verdict(
         "loss",
@@ -135,10 +132,8 @@ def energy_loss(scene: Scene, run: Run) -> Mapping[str, object]:
 def universality(scene: Scene, run: Run, *, positions: int) -> Mapping[str, object]:
     """Born periods of several springs beside the bands of the map: compute, store and judge.
 
-    The claim is about the limit rho -> 0+. Over whole bands secondary bifurcations come before the born
-    excess. It is therefore judged in the quarter of each band next to its upper edge, where the hysteresis is
-    small. Where a spring disagrees there, it is judged again at a sixteenth of the excess. A cell without a
-    period counts as disagreement.
+    Over whole bands secondary bifurcations come before the born excess. The claim is therefore judged next to
+    the upper edges, where the hysteresis is small, and where a spring disagrees again at a sixteenth of it.
     """
     rows, excess = born_everywhere(scene, run, positions), scene.scan.born_excess
     words = "Periods that begin at grazing on several springs, and in the map."
@@ -150,7 +145,7 @@ def universality(scene: Scene, run: Run, *, positions: int) -> Mapping[str, obje
     }
     top = [row for row in rows if row.next_to_edge]
     odd = [row for row in top if not row.agrees]
-    holds = all(row.closer in (row.map, row.also) for row in odd)
+    holds = all(row.has(row.closer) for row in odd)
     if top and not failed:
         share = written(100.0 * (1.0 - len(odd) / len(top)), 3)
         words = "Where the hysteresis is small, the map gives the period just above grazing for"

@@ -48,9 +48,8 @@ def draw_loss(
         plotting.label(axis.yaxis, "$1 - F_m/F_g$", "%")
     plotting.label(axes[1, 0].yaxis, plotting.EXCESS, "%")
     plotting.label(axes[1, 1].yaxis, "frequencies", "%")
-    for place, (axis, title) in enumerate(
-        zip(axes.flat, (*panels, "Eq. (1): share below grazing"), strict=True)
-    ):
+    titles = *panels, "Eq. (1): share below grazing"
+    for place, (axis, title) in enumerate(zip(axes.flat, titles, strict=True)):
         plotting.panel(axis, place, title)
         if letters:
             plotting.mark_letter(axis.xaxis, letter.RESTITUTION, along=0.02 if place == 2 else 0.98)

@@ -146,14 +146,16 @@ class Born:
     map: Annotated[int, "period of the map as ρ goes to 0; 0 for none"]
     also: Annotated[int | None, "second period of the map, where bands overlap"]
     next_to_edge: Annotated[bool, "in the upper quarter of the band"]
-    closer: Annotated[int | None, "born period at a sixteenth of the excess; where the first disagrees"] = (
-        None
-    )
+    closer: Annotated[int | None, "born period at a sixteenth of the excess; where looked at"] = None
 
     @property
     def agrees(self) -> bool:
         """Whether the map has this period."""
-        return self.period is not None and self.period in (self.map, self.also)
+        return self.has(self.period)
+
+    def has(self, period: int | None) -> bool:
+        """Whether this is a period of the map."""
+        return bool(period) and period in (self.map, self.also)
 
 
 class Job(NamedTuple):

@@ -7,20 +7,13 @@ occur in "bands in the (alpha, gamma) parameter plane ... crossed approximately 
 boundary ... there is no hysteresis", which grows "towards ... the lower-lying m - 1".
 
 Computed for m = 3 ... 10 from 19.6 to 23.8 Hz: F_m/F_g - 1, where the p_m orbit ends in a downward scan, in
-nine descriptions (studies.experiment.hysteresis.model)
-
-    map, Eq. (1), one mode with the kick of the beam, with its change with velocity, with loss and delay,
-    kick of all modes, beam; and the map as printed, and with the beam's kick for 1 + tau
-
-The beam's fold is found by shooting (the main job confirms it by downward scans of the motion). Neighbours in
-that chain differ in one thing, so that the beam's hysteresis over the map's is a product of causes:
+the nine descriptions of studies.experiment.hysteresis.model. Neighbours in their chain differ in one thing,
+so that the beam's hysteresis over the map's is a product of causes:
 
     F_beam/F_map = truncation of the map * size of the kick * its change with velocity * delay
                    * higher modes in the flight * ringing met by the next collision
 
-Statistics are of folds deeper than the letter's amplitude stability, 2.5e-4.
-
-The bands are those of the map; across each of them the hysteresis of map and Eq. (1) has a closed form.
+Statistics are of folds deeper than the letter's amplitude stability, 2.5e-4. The bands are those of the map.
 
 Run:     python -m studies hysteresis [--step HZ] [--inside N]
 Writes:  hysteresis.csv (a row a frequency and period), causes.csv (factors at the letter's frequencies and

@@ -30,6 +30,9 @@ BRANCH = (
 
 BANDS = "Bands of p_m in the plane of α and γ as ρ goes to 0, and the path of the experiment through them."
 
+THIN = np.array([1.0, 1.0005])
+"""Width of a mark for an edge whose error is not known."""
+
 EVENTS = {"grazing": "another touch grazes", "undecided": "event not resolved"}
 """Event of a branch -> its name in the picture, where it is another one."""
 
@@ -54,9 +57,7 @@ def draw_curves(scene: Scene, rows: Sequence[Folds], *, letters: bool) -> Figure
         curves(axis, rows, sign)
         for edge in edges:
             words = "upper edge of the band of p$_m$" + ", letter's error of T" * letters
-            axis.axvspan(
-                *(edge.upper * (unsure if letters else np.array([1.0, 1.0005]))), **shade, label=words
-            )
+            axis.axvspan(*(edge.upper * (unsure if letters else THIN)), **shade, label=words)
         for seen in periods_of(scene) if letters else ():
             axis.axvline(seen, **LETTER, label="letter's Fig. 2: p$_m$ named above")
         plotting.panel(axis, number, ("end of the orbits", "the same, logarithmic")[number])
@@ -113,11 +114,8 @@ def draw_branch(rows: Sequence[OnBranch], frequency: float, m: int) -> Figure:
         if row.event:
             last = excess[place] > 0.5 * excess.max()
             at: plotting.Style = {"textcoords": "offset points", "fontsize": NOTE}
-            at |= (
-                {"xytext": (-5.0, -10.0), "ha": "right"}
-                if last
-                else {"xytext": (6.0, -8.0 if row.event == "grazing" else -2.0)}
-            )
+            at |= {"xytext": (-5.0 if last else 6.0, -9.0 if row.event == "grazing" else -2.0)}
+            at["ha"] = "right" if last else "left"
             axis.plot(excess[place], speed[place], "o", color=BLACK, markersize=3.5)
             axis.annotate(EVENTS.get(row.event, row.event), (excess[place], speed[place]), **at)
     axis.set_yscale("log")

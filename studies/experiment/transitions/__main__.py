@@ -6,16 +6,9 @@ lowered again, that orbit remains until some way below grazing.
 
 Computed, at each frequency, for the Nordmark map (Eqs. (2), (3)), the single mode (Eq. (1)), the single mode
 with the restitution and delay of the beam's own collisions (`studies.physics.two_parameters`), and the beam
-with its N modes:
-
-    period           period of the settled orbit at F/F_g - 1 = 1e-3 (born: and at 2.5e-4, 1e-2)
-    excess_down      where that orbit ends when the amplitude is lowered: bracketed by a scan, then located
-    exact            the fold of p_m without simulation
-    extracted        restitution and delay on the settled orbit, and the map with that restitution
-    orbit diagram    strobed points in an upward and a downward scan that carry the physical state along
-
-A grey line in the figures marks an amplitude at which the motion did not settle: its points, of one moment,
-are stored but not drawn.
+with its N modes: the period of the settled orbit at F/F_g - 1 = 1e-3, started below grazing; where that
+orbit ends when the amplitude is lowered, bracketed by a scan and then located; orbit diagrams, in which the
+physical state is carried along.
 
 Run:     python -m studies, or python -m studies transitions [--quick] [--full]     --full takes some minutes;
          python -m studies --all runs every study
