@@ -56,6 +56,9 @@ FULL, QUICK = (1, 40), (4, 20)
 NEAR = 0.05
 """How far a restitution may be from "about 0.1"."""
 
+WHERE = "At a small amplitude above grazing", "At the amplitude of Fig. 4"
+"""The excess of a first collision, for another spring and for the letter's."""
+
 
 @study()
 def effective_impact(scene: Scene, run: Run) -> Mapping[str, object]:
@@ -86,7 +89,8 @@ def effective_impact(scene: Scene, run: Run) -> Mapping[str, object]:
     quoted = next(iter(select(rows, "reference")), None)
     if quoted is not None:
         delay = f"delays mode 1 by {written(1e3 * quoted.delay_s, 2)} ms"
-        run.finding(f"A first collision {delay if quoted.returns else 'keeps mode 1 from coming back'}.")
+        delay = delay if quoted.returns else "keeps mode 1 from coming back to the gap"
+        run.finding(f"{WHERE[run.letters]}, a first collision {delay}.")
         if quoted.returns and any(floor.local_restitution == 1.0 for floor in floors):
             judge(run, quoted, on_orbits(rows), floors)
     return {
@@ -118,9 +122,9 @@ def judge(run: Run, at: Approach, orbits: Sequence[Approach], floors: Sequence[F
     delay = f"{1e3 * at.delay_s:.3f} ms at an excess of {at.excess:g}"
     note = f"{at.delay_s / at.arc_s:.2f} of the time v/a in which the tip would turn by itself"
     run.verdict("delay", "not printed", found=delay, note=note, figure="speed")
-    above = ": more than the letter estimates" if run.letters and lossy > letter.RESTITUTION + NEAR else ""
-    low = f"of at least {written(lossy, 2)}, whatever ball and contact{above}"
-    run.finding(f"A first collision leaves mode 1 a restitution {low}.")
+    less = ": the letter estimates less" if run.letters and lossy > letter.RESTITUTION + NEAR else ""
+    low = f"no first collision leaves mode 1 a restitution below {written(lossy, 2)}, whatever the ball{less}"
+    run.finding(f"{WHERE[run.letters]}, {low}.")
     if returned:
         low = f"as low as {written(min(returned), 2)} at some masses"
         run.finding(f"On settled orbits, where the collision before still rings, the restitution is {low}.")

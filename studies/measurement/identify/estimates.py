@@ -180,7 +180,8 @@ def report(run: Run, found: Mapping[str, Fit]) -> dict[str, Any]:
     run.figure("identify", figure.draw(found, profiles), figure.CAPTION)
     for name, note in [(name, note) for name, one in found.items() for note in notes_of(one)]:
         run.say(f"{name}: {note}")
-    part, name = min((abs(o.standard_error / o.estimate), o.parameter) for o in estimates if o.estimate)
-    best = f"{name.replace('_', ' ')} is known best: to {written(100.0 * part, 1)} % of its value"
-    run.finding(f"Of all fitted parameters the {best}.")
+    own = [one for one in estimates if one.estimate and one.parameter not in UNITS]
+    for part, name in sorted((abs(one.standard_error / one.estimate), one.parameter) for one in own)[-1:]:
+        least = f"{name.replace('_', ' ')} is known least: to {written(100.0 * part, 1)} % of its value"
+        run.finding(f"Of all fitted parameters the {least}.")
     return {"rows": estimates, "quality": quality}
