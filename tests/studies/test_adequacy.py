@@ -9,9 +9,9 @@ from functools import cache
 import numpy as np
 import pytest
 
-from studies.methods.adequacy.__main__ import questions
+from studies.methods.adequacy.__main__ import questions, sentences
 from studies.methods.adequacy.models import Choice, Models
-from studies.methods.adequacy.search import QUANTITIES, Search, first
+from studies.methods.adequacy.search import QUANTITIES, LeastModel, Search, first
 from studies.physics.least_model import least_modes
 from studies.shell.scene import read_scene
 
@@ -159,3 +159,7 @@ def test_the_study_leaves_a_row_a_question(run_study, monkeypatch, count):
     ran = run_study("adequacy", "--quick", "--set", "drive.frequencies_hz=[21.5]")
     assert ran.code == 0 and len(ran.summary["rows"]) == count
     assert all(row["reached"] and row["error"] <= row["tolerance"] for row in ran.summary["rows"])
+    rows = [LeastModel(**row) for row in ran.summary["rows"]]
+    assert ran.summary["findings"] == list(sentences(rows)) != []
+    far = [replace(row, level="beam", quantity="born period") for row in rows[:2]]
+    assert not list(sentences(far))  # Eq. (1) is enough nowhere

@@ -33,6 +33,7 @@ def test_every_source_is_compared_and_one_that_fails_is_a_failed_row(run_study, 
         "Woiwode and Krack 2024": 8,
     }
     wrong = [row["quantity"] for row in ran.summary["rows"] if row["verdict"] == "differs"]
+    assert "but 2 agree" in ran.summary["findings"][0]
     assert wrong == ["frequency at 0.00650108 J", "right beam, mode 5"]
     assert [row["verdict"] for row in ran.rows("rows")] == [row["verdict"] for row in ran.summary["rows"]]
 

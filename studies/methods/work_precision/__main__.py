@@ -2,7 +2,7 @@
 
 Claim: on these problems no outside solver and no method with a time step is both faster and as accurate as
 the exact method, which `simulate` takes by default. Two cost about the same: the letter's scheme, which
-samples the same flights and proves nothing (note [11]), and heyoka where one soft contact lasts as long as the run.
+samples the same flights and proves nothing (note [11]), and heyoka where a soft contact lasts the whole run.
 
 Four problems: Eq. (1) with the hard wall; the scene's beam with a linear contact that lasts as long as
 Hertz's; the same with Hertz's contact; the periodic motion of NLvib's two masses, found by harmonic balance,
@@ -136,7 +136,7 @@ def sentences(rows: Sequence[Point]) -> Iterator[str]:
     others = [(row, time) for row, time in known if row.family != EXACT and row.method != SAMPLED]
     if times := [time for row, time in others if row.missed == 0.0 and (row.error or 0.0) <= 1e-8]:
         ratio = written(min(times) / exact, 2)
-        yield f"For a small error and no missed touch, other methods take at least {ratio} times as long."
+        yield f"Without exact flights, a small error and no missed touch take at least {ratio} times as long."
     if missed := max((row.missed or 0.0 for row, _ in known if row.method == SAMPLED), default=0.0):
         yield f"Flights that are sampled too rarely miss {100.0 * missed:.0f} % of the shallow touches."
 
