@@ -16,6 +16,7 @@ import io
 import json
 from argparse import Namespace
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -27,13 +28,12 @@ from matplotlib.ticker import EngFormatter
 from PIL import Image
 from PIL.PngImagePlugin import PngInfo
 
-from beam import BALL, InvalidValue
 from contact import StroboscopicMap, simulate
 from contact.orbits import Shooting, fold_of
 from studies import ROOT, letter
 from studies.physics.descriptions import up_and_down
 from studies.shell.files import json_text, make_folder, write_atomically
-from studies.shell.film import DRIVE, NO_RENDERING, TOUCHED, Scenery, can_render, prepare_off_screen
+from studies.shell.film import Moment, Scenery, View, stage_of
 from studies.shell.options import Parser, tool
 from studies.shell.plotting import BLUE, PALETTE, PURPLE, STYLE, VERMILION, Style
 from studies.shell.scene import beam_at, model_of, modes_of, read_scene
@@ -47,7 +47,7 @@ EXCESSES = np.linspace(-1.495, 1.205, 46)
 """Excesses in the diagram, in units of the hysteresis; none lies on the fold or on grazing."""
 
 LARGE = STYLE | {"font.size": 13.0, "axes.labelsize": 13.0, "xtick.labelsize": 11.0, "ytick.labelsize": 11.0}
-STRIP, STEEL, DARK, PALE = "#D0A62B", "#5A6470", "#4A4A4A", "#A08738"
+STEEL, DARK, PALE = "#5A6470", "#4A4A4A", "#A08738"
 
 
 def orbit_drawn() -> Drawn:
@@ -83,43 +83,33 @@ def costs_drawn() -> Drawn:
 
 def draw_spring(axes: Axes, drawn: Drawn) -> None:
     """The spring at the impact, and paler at rest and at its lowest, with the names of what is seen."""
-    prepare_off_screen()
-    import pyvista
-
-    modes, gap = modes_of(SCENE), SCENE.stop.gap_m
+    modes, gap, size = modes_of(SCENE), SCENE.stop.gap_m, (1274, 980)
     scenery = Scenery.of(modes, ball_radius=SCENE.tip.ball_radius_m, gap=gap, swing=gap)
     mesh, plate = scenery.mesh, np.array(scenery.plate)
     coordinates = np.array([drawn["impact"], drawn["lowest"], np.zeros(len(drawn["impact"]))])
     moving = np.flatnonzero(modes.coupled)[: coordinates.shape[1]]
-    shapes = mesh.points + np.tensordot(coordinates, mesh.shapes[moving], 1)
-    base = np.array([(-0.012, -0.008, -0.019), (0.002, 0.008, 0.019)])
-    plotter: Any = pyvista.Plotter(off_screen=True, window_size=[1274, 980])
-    plotter.set_background("white")
-    plotter.enable_anti_aliasing("ssaa")
-    light: Style = {"ambient": 0.35, "diffuse": 0.65}
-    for points, opacity in zip(shapes, (1.0, 0.16, 0.10), strict=True):
-        look: Style = {"cmap": [STRIP, STEEL], "show_scalar_bar": False, "opacity": opacity, **light}
-        plotter.add_mesh(mesh.grid(points), scalars=(mesh.part == BALL).astype(float), clim=(0, 1), **look)
-    for box, colour in ((plate, TOUCHED), (base, DARK)):
-        plotter.add_mesh(pyvista.Box(np.ravel(box, "F")), color=colour, **light)
-    plotter.enable_parallel_projection()
-    plotter.view_vector((-0.55, 0.42, 0.72), viewup=DRIVE)
-    plotter.camera.zoom(1.42)
-    axes.imshow(plotter.screenshot(return_img=True), extent=(-1, 1, -1, 1), aspect="auto")
-    view = plotter.camera.GetCompositeProjectionTransformMatrix(1274 / 980, -1.0, 1.0)
-    view = pyvista.array_from_vtkmatrix(view)
-    plotter.close()
-    end = int(np.argmax(np.dot(mesh.points, view[0, :3])))
+    swung = np.tensordot(coordinates, mesh.shapes[moving], 1)
+    shapes, base = mesh.points + swung, np.array([(-0.012, -0.008, -0.019), (0.002, 0.008, 0.019)])
+    room = np.array([np.minimum(scenery.room[0], base[0]), np.maximum(scenery.room[1], base[1])])
+    scenery = replace(scenery, room=room, more=((base, DARK),))
+    towards = np.array([-0.55, 0.42, 0.72])
+    stage, view = stage_of(scenery, towards, size), View.of(towards, room, size[1] / size[0])
+    seen, *others = (stage(Moment(points=points, base=np.zeros(3))).astype(float) for points in swung)
+    pale = [255.0 - share * (255.0 - one) for share, one in zip((0.3, 0.2), others, strict=True)]
+    whole = np.where(np.all(seen == 255.0, axis=2, keepdims=True), np.minimum(*pale), seen).astype(np.uint8)
+    axes.imshow(whole, extent=(-1, 1, -1, 1), aspect="auto")
+    end = int(np.argmax(view(mesh.points)[:, 0]))
     for name, point, offset, colour, side in (
-        ("plate", np.mean(plate, axis=0), (-16, 12), "#D9600B", "right"),
+        ("plate", np.mean(plate, axis=0), (-16, 12), STEEL, "right"),
         ("ball", shapes[0][np.unique(mesh.triangles)].mean(axis=0), (-52, 8), STEEL, "right"),
         ("base", base.mean(axis=0), (0, -42), DARK, "center"),
+        ("damping tape", shapes[0][mesh.hexahedra[len(mesh.hexahedra) // 9, 0]], (-24, 36), DARK, "right"),
         ("lowest", shapes[1][end], (5, 0), PALE, "left"),
         ("at rest", shapes[2][end], (5, 0), PALE, "left"),
     ):
-        line = {"arrowstyle": "-", "color": colour} if name == "ball" else None
-        look = {"textcoords": "offset points", "ha": side, "va": "center", "arrowprops": line}
-        axes.annotate(name, (view @ [*point, 1.0])[:2], offset, color=colour, annotation_clip=False, **look)
+        line = {"arrowstyle": "-", "color": colour} if name in ("ball", "damping tape") else None
+        look: Style = {"textcoords": "offset points", "ha": side, "va": "center", "arrowprops": line}
+        axes.annotate(name, (*view(point),), offset, color=colour, annotation_clip=False, **look)
     axes.axis("off")
 
 
@@ -205,8 +195,6 @@ def png_of(draw: Callable[[Drawn], Figure], drawn: Drawn) -> bytes:
 
 def pictures(given: Namespace) -> tuple[str, Mapping[str, object]]:
     """Draw both pictures, and write them when both are drawn."""
-    if not can_render():
-        raise InvalidValue(f"p4.png shows the spring in space, but {NO_RENDERING}")
     folder, costs = make_folder(given.out), png_of(draw_costs, costs_drawn())
     drawn = {"p4.png": png_of(draw_orbit, orbit_drawn()), "costs.png": costs}
     paths = [write_atomically(folder / name, content) for name, content in drawn.items()]
@@ -214,7 +202,7 @@ def pictures(given: Namespace) -> tuple[str, Mapping[str, object]]:
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Draw the pictures; returns 0, or 2 for wrong use and where nothing can be drawn in space."""
+    """Draw the pictures; returns 0, or 2 for wrong use."""
     parser = Parser("python -m studies pictures", __doc__ or "")
     parser.add_argument("--out", type=Path, default=PICTURES, metavar="DIR", help="folder of the pictures")
     return tool(parser, argv, pictures)

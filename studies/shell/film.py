@@ -1,14 +1,11 @@
-"""A spring in motion, seen in space: one picture after another, as gif, as mp4 and as meshes for ParaView.
+"""A spring in motion, seen in space: one picture after another, as gif and as mp4.
 
     scenery = Scenery.of(modes, ball_radius=2.5e-3, gap=0.0119, swing=0.013)
-    with stage_of(scenery) as stage:
-        write_film(run, "motion", "The motion.", stage, moments)
+    write_film(run, "motion", "The motion.", stage_of(scenery), moments)
 
 `Moment` says where everything is: displacements of the points of the strip, of the ball and of the base,
-whether the plate is touched, and what is written above. pyvista draws off the screen where that works.
-Without the libraries of OpenGL that ends in a segmentation fault which no program can catch, so that it is
-tried once in a process of its own; where it does not work matplotlib draws the spring in its plane, and one
-sentence names the packages that are missing.
+whether the plate is touched, and what is written above. What is seen is drawn by matplotlib, without any
+graphics library: outer faces that look to the viewer, the farthest first, in parallel projection.
 """
 
 from __future__ import annotations
@@ -17,22 +14,18 @@ import importlib.util
 import io
 import math
 import os
-import subprocess
-import sys
 import tempfile
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import cache
-from itertools import chain
+from itertools import chain, product
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import ConvexHull
 
 from beam import BALL, BRASS, LAYER, STRIP, Material, Modes, SpringMesh, solid_spring
-from studies.shell.executors import say
 from studies.shell.files import write_atomically
 from studies.shell.programs import needs
 from studies.shell.run import Run
@@ -40,16 +33,6 @@ from studies.shell.run import Run
 Array = NDArray[np.float64]
 Picture = NDArray[np.uint8]
 """Rows, columns, and red, green, blue."""
-
-NO_RENDERING = "off-screen rendering does not work here (Debian: libegl1 libegl-mesa0 libgl1-mesa-dri)"
-
-TRIAL = (
-    "import pyvista; plotter = pyvista.Plotter(off_screen=True, window_size=(32, 32)); "
-    "plotter.add_mesh(pyvista.Sphere()); "
-    "raise SystemExit(int(plotter.screenshot(return_img=True).std() == 0.0))"
-)
-PATIENCE = 120.0
-"""Seconds for the trial: importing pyvista from a cold disk takes half a minute at worst."""
 
 WIDTH, HEIGHT = 880, 400
 """Of a picture, in points; both even, as video wants them."""
@@ -98,13 +81,15 @@ class Moment:
 class Scenery:
     """What is drawn: the solid spring at rest, the plate (None without one), and what holds everything.
 
-    `plate` and `room` are boxes, the lowest and the highest corner, shape (2, 3) [m]; `strip` is a colour.
+    `plate` and `room` are boxes, the lowest and the highest corner, shape (2, 3) [m]; `strip` is a colour,
+    and `more` are boxes that stand still, with their colours.
     """
 
     mesh: SpringMesh
     plate: Array | None
     room: Array
     strip: str
+    more: tuple[tuple[Array, str], ...] = ()
 
     def placed(self, moment: Moment) -> Array:
         """The points of the mesh at a moment, shape (n_points, 3) [m]."""
@@ -131,103 +116,98 @@ class Scenery:
         return Scenery(mesh=mesh, plate=plate, room=room, strip=strip)
 
 
+def box(corners: Array, pieces: int = 8) -> Array:
+    """Faces of a box, shape (n, 4, 3), cut into `pieces` each way: what is near one side of it is sorted."""
+    low, high = corners
+    u, v = (part.ravel() for part in np.mgrid[0:pieces, 0:pieces])
+    square = np.array([(u, v), (u + 1, v), (u + 1, v + 1), (u, v + 1)]) / pieces
+    faces = []
+    for axis in range(3):
+        across = (axis + 1) % 3, (axis + 2) % 3
+        for end in (0.0, 1.0):
+            unit = np.empty((4, pieces**2, 3))
+            unit[..., across], unit[..., axis] = square.transpose(0, 2, 1)[:: 1 if end else -1], end
+            faces.append(low + unit * (high - low))
+    return np.concatenate(faces, axis=1).transpose(1, 0, 2)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class View:
+    """A parallel projection into a window that is `half` wide and high on each side of `centre` [m].
+
+    The rows of `axes` point right, up and towards the viewer.
+    """
+
+    axes: Array
+    centre: Array
+    half: Array
+
+    @staticmethod
+    def of(towards: Array, room: Array, aspect: float) -> View:
+        """The view from `towards` of all that is in the box `room`; `aspect` is height over width."""
+        towards = towards / np.linalg.norm(towards)
+        right = np.cross(DRIVE, towards)
+        axes = np.array([right / np.linalg.norm(right), np.zeros(3), towards])
+        axes[1] = np.cross(towards, axes[0])
+        corners = np.array(list(product(*room.T))) @ axes.T
+        low, high = corners.min(axis=0), corners.max(axis=0)
+        wide = 0.53 * max(high[0] - low[0], (high[1] - low[1]) / aspect)
+        return View(axes=axes, centre=0.5 * (low + high) @ axes, half=np.array([wide, wide * aspect]))
+
+    def __call__(self, points: Array) -> Array:
+        """Places in the window, from -1 to 1 each way, shape (..., 2)."""
+        places: Array = (points - self.centre) @ self.axes[:2].T / self.half
+        return places
+
+    def painted(self, faces: Array, colours: Array) -> tuple[Array, Array]:
+        """Faces in the window and their shaded colours, (n, 4, 2) and (n, 3), the farthest first."""
+        normal = np.cross(faces[:, 1] - faces[:, 0], faces[:, 2] - faces[:, 0])
+        light = normal @ self.axes[2] / np.maximum(np.linalg.norm(normal, axis=1), np.finfo(float).tiny)
+        order = np.argsort(faces.mean(axis=1) @ self.axes[2])
+        order = order[light[order] > 0.0]
+        return self(faces[order]), colours[order] * (0.5 + 0.5 * light[order, None])
+
+
+def outline(places: Array) -> Array:
+    """The line around places in a window, closed."""
+    around = ConvexHull(places).vertices
+    found: Array = places[[*around, around[0]]]
+    return found
+
+
 Stage = Callable[[Moment], Picture]
 Below = Callable[[int], Picture]
 """What stands below the frame of this number."""
 
 
-@contextmanager
-def stage_of(scenery: Scenery, *, simple: bool = False) -> Iterator[Stage]:
-    """What turns a moment into a picture: pyvista where it can draw, or else, and if `simple`, matplotlib."""
-    if simple or not can_render():
-        if not simple:
-            say(f"matplotlib draws the spring in its plane: {NO_RENDERING}")
-        yield _painter(scenery)
-        return
-    with _plotter(scenery) as stage:
-        yield stage
-
-
-def prepare_off_screen() -> None:
-    """Set what VTK has to know before it is imported."""
-    os.environ.setdefault("PYVISTA_OFF_SCREEN", "true")
-    if not os.environ.get("DISPLAY"):
-        os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
-
-
-@cache
-def can_render() -> bool:
-    """Whether a picture could be drawn without a window; tried once."""
-    prepare_off_screen()
-    try:
-        command = [sys.executable, "-c", TRIAL]
-        return not subprocess.run(command, capture_output=True, timeout=PATIENCE, check=False).returncode
-    except (OSError, subprocess.SubprocessError):
-        return False
-
-
-@contextmanager
-def _plotter(scenery: Scenery) -> Iterator[Stage]:
-    """Pictures by pyvista, in parallel projection: equal lengths in a plane across the view stay equal."""
-    prepare_off_screen()
-    import pyvista
-
-    mesh = scenery.mesh
-    plotter: Any = pyvista.Plotter(off_screen=True, window_size=[WIDTH, HEIGHT])
-    plotter.set_background("white")
-    grid = mesh.grid(mesh.points.copy())
-    colours = {part: pyvista.Color(one).int_rgb for part, one in {**COLOURS, STRIP: scenery.strip}.items()}
-    grid.cell_data["colour"] = np.array([colours[part] for part in mesh.part.tolist()], dtype=np.uint8)
-    plotter.add_mesh(grid, scalars="colour", rgb=True, ambient=0.4, diffuse=0.6)
-    plate = None
-    if scenery.plate is not None:
-        box = pyvista.Box(scenery.plate.T.ravel())
-        plate = plotter.add_mesh(box, color=PLATE, edge_color=TOUCHED, line_width=5, ambient=0.4, diffuse=0.6)
-    camera, centre, reach = plotter.camera, scenery.room.mean(axis=0), np.ptp(scenery.room, axis=0)
-    camera.position, camera.focal_point = tuple(centre + TOWARDS_VIEWER), tuple(centre)
-    camera.up, camera.parallel_projection = tuple(DRIVE), True
-    camera.parallel_scale = 0.58 * max(reach[1] + 0.4 * reach[2], reach[0] * HEIGHT / WIDTH)
-    plotter.show(auto_close=False)
-
-    def picture(moment: Moment) -> Picture:
-        grid.points = scenery.placed(moment)
-        if plate is not None:
-            plate.position, plate.prop.show_edges = tuple(moment.base), moment.touched
-        plotter.render()
-        return np.asarray(plotter.screenshot(return_img=True), dtype=np.uint8)[..., :3].copy()
-
-    try:
-        yield picture
-    finally:
-        plotter.close()
-
-
-def _painter(scenery: Scenery) -> Stage:
-    """Pictures by matplotlib: the strip in its plane, ball and plate as outlines."""
+def stage_of(
+    scenery: Scenery, towards: Array = TOWARDS_VIEWER, size: tuple[int, int] = (WIDTH, HEIGHT)
+) -> Stage:
+    """What turns a moment into a picture of `size` points, seen from `towards`."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.collections import PolyCollection
+    from matplotlib.colors import to_rgb
     from matplotlib.figure import Figure
-    from matplotlib.patches import Circle, Rectangle
 
-    mesh, dots = scenery.mesh, 100
-    figure = Figure(figsize=(WIDTH / dots, HEIGHT / dots), dpi=dots)
-    canvas, axes = FigureCanvasAgg(figure), figure.add_axes((0.0, 0.0, 1.0, 1.0))
-    rows = mesh.hexahedra[mesh.part[: len(mesh.hexahedra)] == STRIP]
-    rows = rows[mesh.points[rows].mean(axis=1)[:, 2] > -1e-9]  # of two legs side by side one hides the other
-    ball = np.unique(mesh.triangles)
-    (strip,) = axes.plot([], [], color=scenery.strip, linewidth=2.5)
-    spot = axes.add_patch(Circle((0.0, 0.0), 0.5 * float(np.ptp(mesh.points[ball, 2])), color="0.5"))
-    low, high = scenery.plate if scenery.plate is not None else np.zeros((2, 3))
-    plate = axes.add_patch(Rectangle(low[:2], *(high - low)[:2], fc=PLATE, lw=3.0, visible=bool(high.any())))
-    centre, reach = scenery.room.mean(axis=0)[:2], np.ptp(scenery.room, axis=0)
-    half = 0.56 * max(reach[0] / WIDTH, reach[1] / HEIGHT) * np.array([WIDTH, HEIGHT])
-    axes.set(xlim=(centre[0] - half[0], centre[0] + half[0]), ylim=(centre[1] - half[1], centre[1] + half[1]))
+    (quads, part), triangles = scenery.mesh.surface(), scenery.mesh.triangles
+    corners = np.concatenate([quads, triangles[:, [0, 1, 2, 2]]])
+    plate = np.empty((0, 4, 3)) if scenery.plate is None else box(scenery.plate)
+    still = [(box(corner), colour) for corner, colour in scenery.more]
+    names = {**COLOURS, STRIP: scenery.strip}
+    named = [names[one] for one in [*part.tolist(), *[BALL] * len(triangles)]] + [PLATE] * len(plate)
+    colours = np.array([to_rgb(one) for one in [*named, *(c for faces, c in still for _ in faces)]])
+    view, dots = View.of(towards, scenery.room, size[1] / size[0]), 100
+    figure = Figure(figsize=(size[0] / dots, size[1] / dots), dpi=dots)
+    canvas, axes = FigureCanvasAgg(figure), figure.add_axes((0.0, 0.0, 1.0, 1.0), xlim=(-1, 1), ylim=(-1, 1))
+    seen = axes.add_collection(PolyCollection([], linewidths=0.4))
+    (edge,) = axes.plot([], [], color=TOUCHED, linewidth=2.5)
     axes.axis("off")
 
     def picture(moment: Moment) -> Picture:
-        points = scenery.placed(moment)
-        strip.set_data(*points[rows].mean(axis=1)[:, :2].T)
-        spot.set(center=points[ball].mean(axis=0)[:2])
-        plate.set(xy=(low + moment.base)[:2], edgecolor=TOUCHED if moment.touched else PLATE)
+        faces = [scenery.placed(moment)[corners], plate + moment.base, *(one for one, _ in still)]
+        places, shades = view.painted(np.concatenate(faces), colours)
+        seen.set(verts=places, facecolors=shades, edgecolors=shades)
+        edge.set_data(*(outline(view(faces[1].reshape(-1, 3))).T if moment.touched else ((), ())))
         canvas.draw()
         return np.asarray(canvas.buffer_rgba(), dtype=np.uint8)[..., :3].copy()
 

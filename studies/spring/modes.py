@@ -141,14 +141,14 @@ def write_films(run: Run, solved: Modes, radius: float, count: int, frames: int)
     """One period of each of the first modes, in space, repeated without a seam."""
     largest = largest_of(solved)
     scenery = Scenery.of(solved, ball_radius=radius, swing=largest)
-    with stage_of(scenery, simple=run.quick) as stage:
-        for number in run.track(range(count), "films of modes"):
-            shape = scenery.mesh.normalised(largest)[number]
-            phases = 2.0 * math.pi * np.arange(frames) / frames
-            name = f"mode {number + 1}: {solved.frequencies_hz[number]:.1f} Hz"
-            swings = [math.cos(phase) * shape for phase in phases]
-            moments = [Moment(points=points, base=np.zeros(3), lines=[name]) for points in swings]
-            write_film(run, f"mode_{number + 1}", f"One period of {name}, enlarged.", stage, moments)
+    stage = stage_of(scenery)
+    for number in run.track(range(count), "films of modes"):
+        shape = scenery.mesh.normalised(largest)[number]
+        phases = 2.0 * math.pi * np.arange(frames) / frames
+        name = f"mode {number + 1}: {solved.frequencies_hz[number]:.1f} Hz"
+        swings = [math.cos(phase) * shape for phase in phases]
+        moments = [Moment(points=points, base=np.zeros(3), lines=[name]) for points in swings]
+        write_film(run, f"mode_{number + 1}", f"One period of {name}, enlarged.", stage, moments)
 
 
 def judge(scene: Scene, run: Run) -> None:

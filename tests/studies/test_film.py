@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
-
 import numpy as np
 import pytest
 from PIL import Image
@@ -70,14 +68,13 @@ def test_the_frames_of_an_orbit_show_its_contact(scene):
     assert orbit.base == pytest.approx(oscillator.drive.displacement(orbit.time))
 
 
-@pytest.mark.parametrize("simple", [True, pytest.param(False, marks=pytest.mark.slow)])
-def test_a_picture_shows_what_moves(scene, modes, simple):
+def test_a_picture_shows_what_moves(scene, modes):
     scenery = Scenery.of(modes, ball_radius=scene.tip.ball_radius_m, gap=0.01, swing=0.01)
     rest = at_rest(scenery)
     swung = Moment(points=scenery.mesh.normalised(0.008)[0], base=np.zeros(3))
     touched = Moment(points=rest.points, base=rest.base, touched=True)
-    with stage_of(scenery, simple=simple) as stage:
-        pictures = [stage(moment) for moment in (rest, swung, touched, rest)]
+    stage = stage_of(scenery)
+    pictures = [stage(moment) for moment in (rest, swung, touched, rest)]
     assert {picture.shape for picture in pictures} == {(film.HEIGHT, film.WIDTH, 3)}
     assert (pictures[0] == pictures[3]).all()
     for other in pictures[1:3]:
@@ -87,19 +84,16 @@ def test_a_picture_shows_what_moves(scene, modes, simple):
         assert picture[0].min() == picture[-1].min() == picture[:, 0].min() == picture[:, -1].min() == 255
 
 
-def test_without_graphics_matplotlib_draws_and_it_is_told(scene, modes, monkeypatch, capsys):
-    monkeypatch.setattr(film, "can_render", lambda: False)
-    scenery = Scenery.of(modes, ball_radius=scene.tip.ball_radius_m, swing=0.01)
-    with stage_of(scenery) as stage:
-        assert stage(at_rest(scenery)).std() > 1.0
-    assert "libegl1" in capsys.readouterr().err
-
-
-def test_a_crash_of_the_trial_means_no_graphics(monkeypatch):
-    monkeypatch.setattr(subprocess, "run", lambda *a, **k: subprocess.CompletedProcess(a, returncode=-11))
-    film.can_render.cache_clear()
-    assert not film.can_render()
-    film.can_render.cache_clear()
+def test_what_is_near_hides_what_is_far():
+    """A closed box shows the three faces that look to the viewer, and each face looks outwards."""
+    faces = film.box(np.array([(-1.0, -2.0, -3.0), (1.0, 2.0, 3.0)]))
+    normal = np.cross(faces[:, 1] - faces[:, 0], faces[:, 2] - faces[:, 0])
+    assert len(faces) == 6 * 64 and np.all(np.sum(normal * faces.mean(axis=1), axis=1) > 0.0)
+    assert np.linalg.norm(normal, axis=1).sum() == pytest.approx(2.0 * (2 * 4 + 4 * 6 + 6 * 2))
+    view = film.View.of(np.array([0.2, 0.3, 0.9]), np.array([(-1.0, -2.0, -3.0), (1.0, 2.0, 3.0)]), 0.5)
+    places, shades = view.painted(faces, np.ones((len(faces), 3)))
+    assert len(places) == 3 * 64 and np.abs(places).max() < 1.0 and len(np.unique(shades.round(9))) == 3
+    np.testing.assert_allclose(view.axes @ view.axes.T, np.eye(3), atol=1e-15)
 
 
 def test_gif_and_mp4_hold_every_frame(tmp_path):

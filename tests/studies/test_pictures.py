@@ -43,12 +43,6 @@ def test_the_costs_are_those_of_the_table():
     assert [name for name, row in shown.items() if row["error"]][:1] == ["exact"]
 
 
-def test_without_graphics_a_sentence_says_so_and_nothing_is_written(tmp_path, monkeypatch, capsys):
-    monkeypatch.setattr(pictures, "can_render", lambda: False)
-    assert pictures.main(["--out", str(tmp_path / "new")]) == 2
-    assert "libegl1" in capsys.readouterr().err and not list(tmp_path.iterdir())
-
-
 @pytest.mark.slow
 def test_the_command_draws_what_is_committed(tmp_path):
     assert pictures.main(["--out", str(tmp_path)]) == 0

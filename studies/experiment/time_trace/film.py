@@ -92,8 +92,7 @@ def film(
     slow = f"{orbit.slowed.min():.0f} to {orbit.slowed.max():.0f} times slower than life"
     run.say(f"{words}: {len(orbit.contacts)} contacts, {slow}")
     holds = "One period of the orbit, slow at the collision; below, the ball against time."
-    with stage_of(scenery, simple=run.quick) as stage:
-        write_film(run, "motion", holds, stage, moments, below=strip(orbit, trace, gap))
+    write_film(run, "motion", holds, stage_of(scenery), moments, below=strip(orbit, trace, gap))
     return {"contacts_s": orbit.contacts, "magnification": magnification}
 
 
