@@ -35,15 +35,15 @@ def draw(
         for number, (axis, row, found) in enumerate(zip(axes.flat, rows, diagrams, strict=False)):
             if name in found:
                 panel(axis, row, found[name], letters)
-            seen = "" if row.letter is None else f" (letter: p$_{{{row.letter}}}$)"
+            seen = "" if row.letter is None else f" (letter p$_{{{row.letter}}}$)"
             words = f"p$_{{{row.period}}}$" if row.period else "no period"
             plotting.panel(axis, number, f"{row.frequency_hz:.2f} Hz: {words}{seen}")
         sideways = (plotting.EXCESS, "10$^{-3}$") if name == "map" else ("drive amplitude", "mm")
         upwards = {
             "map": ("$x$ of the map", "1"),
-            "single_mode": ("tip displacement $ξ$", "mm"),
-            "two_parameters": ("tip displacement $ξ$", "mm"),
-            "beam": (f"read-out {read}", "mm" if read == "displacement" else "mrad"),
+            "single_mode": ("tip $ξ$", "mm"),
+            "two_parameters": ("tip $ξ$", "mm"),
+            "beam": ("read-out", "mm" if read == "displacement" else "mrad"),
         }[name]
         for axis in axes.flat[max(len(rows) - columns, 0) : len(rows)]:
             plotting.label(axis.xaxis, *sideways)
