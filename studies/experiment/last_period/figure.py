@@ -77,6 +77,7 @@ def draw_change(axis: Axes, row: Transition, before: float | None, place: int) -
         end, tip = (LEFT, "<") if factor < LEFT else (RIGHT, ">")
         axis.plot(end, high, marker=tip, label="bar goes on beyond the axis", **mark)
     if row.born != row.m:
-        words = f"{word(row.born)} at {row.change}"
-        at: plotting.Style = {"xycoords": ("axes fraction", "data"), "ha": "right", "va": "center"}
-        axis.annotate(words, (0.99, high), **at, fontsize=NOTE)
+        words = {None: "failed", 0: "no period"}.get(row.born, f"p{row.born} instead")
+        side, ha = (0.01, "left") if factor > 1.0 else (0.99, "right")  # where the bar is not
+        at: plotting.Style = {"xycoords": ("axes fraction", "data"), "ha": ha, "va": "center"}
+        axis.annotate(words, (side, high), **at, fontsize=NOTE)
