@@ -79,7 +79,7 @@ def draw(rows: Sequence[LeastModel]) -> Figure:
 
     shown, widest = [row for row in rows if row.least != "none"][::-1], 2.0
     with plotting.house_style():
-        figure, axis = plotting.new_figure(width=plotting.PAGE, height=0.022 + 0.0055 * len(shown))
+        figure, axis = plotting.new_figure(width=plotting.PAGE, height=0.12)
         for place, row in enumerate(shown):
             smaller = math.nan if row.error_one_less is None else row.error_one_less + row.parts["reference"]
             errors = {"the least model": row.error, "the best model a step smaller": smaller}
@@ -89,12 +89,16 @@ def draw(rows: Sequence[LeastModel]) -> Figure:
                 if over > widest:
                     look |= {"marker": ">", "color": "0.4", "label": "beyond the axis"}
                 axis.plot(min(over, widest), place, **look)
-            across, words = axis.get_yaxis_transform(), row.least.removeprefix("beam, ")
-            axis.text(1.08, place, words, transform=across, va="center", fontsize=plotting.NOTE)
-        axis.set_title("least model", x=1.08, loc="left")
+            across, words = (
+                axis.get_yaxis_transform(),
+                row.least.removeprefix("beam, ").removesuffix(" contact"),
+            )
+            beside = {"va": "center", "fontsize": plotting.NOTE}
+            axis.annotate(words, (1.0, place), (10.0, 0.0), across, "offset points", **beside)
+        axis.set_title("least model, contact law", x=1.12, loc="left")
         axis.axvline(1.0, **plotting.GUIDE, label="tolerance")
         axis.set_xlim(0.0, widest)
         axis.set_yticks(range(len(shown)), [f"{row.quantity}, {row.frequency_hz:.2f} Hz" for row in shown])
         plotting.label(axis.xaxis, "error / tolerance")
-        plotting.legend_below(figure, [axis], 4)
+        plotting.legend_below(figure, [axis], 2)
     return figure
