@@ -25,10 +25,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 
-from beam import BALL, BRASS, LAYER, STRIP, Material, Modes, SpringMesh, solid_spring
+from beam import BALL, LAYER, STRIP, Modes, SpringMesh, solid_spring
 from studies.shell.files import write_atomically
 from studies.shell.programs import needs
 from studies.shell.run import Run
+from studies.shell.scene import metal_of
 
 Array = NDArray[np.float64]
 Picture = NDArray[np.uint8]
@@ -56,14 +57,10 @@ TOWARDS_VIEWER = np.array([0.20, 0.30, 0.93])
 """Across the strip, a little from the side of the ball, which a wide strip would hide."""
 
 COLOURS = {LAYER: "#4A4A4A", BALL: "#E9EDF2"}
+BRASS, OTHER = "#D0A62B", "#68747F"
+"""Strips of brass, and of steel or anything else."""
 PLATE, TOUCHED = "#8C9AA8", "#FF7A1A"
 """The plate, and its edges and all marks while it is touched."""
-
-
-def metal(material: Material) -> str:
-    """The colour of a strip: brass where modulus and density are within a tenth of it, or else steel."""
-    same = (getattr(material, name) / getattr(BRASS, name) for name in ("youngs_modulus", "density"))
-    return "#D0A62B" if all(abs(ratio - 1.0) < 0.1 for ratio in same) else "#68747F"
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -112,7 +109,10 @@ class Scenery:
                 plate[:, 0] += math.copysign(half - 0.75 * ball_radius, beside[0])
             held.append(plate)
         cloud = np.concatenate(held)
-        room, strip = np.array([cloud.min(axis=0), cloud.max(axis=0)]), metal(spring.sections[0].material)
+        room, strip = (
+            np.array([cloud.min(axis=0), cloud.max(axis=0)]),
+            BRASS if metal_of(spring.sections[0].material) == "brass" else OTHER,
+        )
         return Scenery(mesh=mesh, plate=plate, room=room, strip=strip)
 
 

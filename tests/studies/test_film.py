@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from beam import BRASS, STEEL
+from beam import BRASS, DAMPING_TAPE, STEEL
 from contact import StroboscopicMap
 from contact.orbits import born
 from studies.experiment.time_trace.film import drawn_shapes, film_orbit
 from studies.shell import film
 from studies.shell.film import Moment, Scenery, can_encode, stage_of, write_gif, written_as_mp4
-from studies.shell.scene import beam_at, modes_of
+from studies.shell.scene import beam_at, metal_of, modes_of
 
 COARSE = {"spring.elements_per_leg": 20, "spring.elements_on_arc": 12, "modes.count": 12}
 
@@ -40,7 +40,11 @@ def test_the_drawn_ball_meets_the_drawn_plate_when_the_tip_has_moved_by_the_gap(
     assert low[1] - ball[:, 1].max() == pytest.approx(gap, abs=0.02 * radius)
     assert low[0] < ball[:, 0].mean() < high[0]
     assert Scenery.of(modes, ball_radius=radius, swing=gap).plate is None
-    assert scenery.strip == film.metal(BRASS) != film.metal(STEEL)
+    assert scenery.strip == film.BRASS and [*map(metal_of, (BRASS, STEEL, DAMPING_TAPE))] == [
+        "brass",
+        "steel",
+        "",
+    ]
 
 
 def test_higher_modes_are_enlarged_and_the_tip_stays_where_it_is(scene, modes):

@@ -266,12 +266,12 @@ def with_first_mode(scene: Scene) -> Scene:
     return scene.replace(values, provenance="mode 1")
 
 
-def material_of(scene: Scene) -> str:
-    """Brass or steel, if modulus and density of the sheet are within a tenth of it, else ""."""
-    found = [scene.spring.young_modulus_pa, scene.spring.density_kg_m3]
+def metal_of(material: beam.Material) -> str:
+    """Brass or steel, if modulus and density are within a tenth of it, else ""."""
+    found = [material.youngs_modulus, material.density]
     known = {"brass": beam.BRASS, "steel": beam.STEEL}
     like = [name for name, m in known.items() if np.allclose(found, [m.youngs_modulus, m.density], 0.1, 0.0)]
-    return like[0] if like and scene.spring.kind != "modal_data" else ""
+    return like[0] if like else ""
 
 
 def spring_in_words(scene: Scene) -> str:
@@ -279,7 +279,7 @@ def spring_in_words(scene: Scene) -> str:
     if scene.spring.kind == "modal_data":
         return "spring with measured modes"
     kind = scene.spring.kind.replace("_u", " U-shaped spring").replace("_", " ")
-    return f"{material_of(scene)} {kind}".lstrip()
+    return f"{metal_of(sections_of(scene)[0].material)} {kind}".lstrip()
 
 
 def size_in_words(scene: Scene) -> str:
