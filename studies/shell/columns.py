@@ -16,9 +16,12 @@ import dataclasses
 import io
 import math
 import re
+import sys
 import typing
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from operator import attrgetter
+from typing import Any
 
 import numpy as np
 
@@ -149,3 +152,42 @@ def csv_text(columns: Sequence[Column], rows: Sequence[object]) -> str:
     writer.writerow(column.name for column in columns)
     writer.writerows([column.cell(row) for column in columns] for row in rows)
     return stream.getvalue()
+
+
+def print_table(
+    columns: Sequence[Column], rows: Sequence[object], caption: str, show: Sequence[str] | None
+) -> None:
+    """The table on the terminal: the fields and properties `show` of the rows, by default every column."""
+    from rich.console import Console
+    from rich.table import Table
+
+    shown = list[tuple[str, Callable[[Any], object]]]()
+    for field in dict.fromkeys([one.field for one in columns] if show is None else show):
+        own = [(one.name, one.cell) for one in columns if one.field == field]
+        shown += own or [(field, attrgetter(field))]  # a property is text for a person
+    if shown:
+        table = Table(title=caption, title_justify="left", box=None, pad_edge=False)
+        for heading, _ in shown:
+            table.add_column(heading, justify="right", overflow="fold")
+        for row in rows:
+            table.add_row(*(_shown(cell(row)) for _, cell in shown))
+        width = None if sys.stderr.isatty() else 200
+        Console(file=sys.stderr, width=width, markup=False, highlight=False).print(table)
+
+
+def _shown(value: object) -> str:
+    """A cell of a table on the terminal."""
+    if isinstance(value, float):
+        return f"{value:.5g}"
+    return (
+        "-" if value is None else {True: "yes", False: "no"}[value] if isinstance(value, bool) else str(value)
+    )
+
+
+NAMES = re.compile(r"\bp\d+|Eqs?\. \(\d\)|Figs?\. \d|[Mm]odes? \d+|\[\d+\]")
+"""Words with digits that are no numbers."""
+
+
+def numbers_in(sentence: str) -> list[str]:
+    """The numbers of a sentence; p10, Eq. (1), Fig. 2, mode 1 and note [11] are names."""
+    return re.findall(r"\d[\d.,]*(?:e[-+]?\d+| × 10)?", NAMES.sub("", sentence))

@@ -29,7 +29,7 @@ from beam import BALL, LAYER, STRIP, Modes, SpringMesh, solid_spring
 from studies.shell.files import write_atomically
 from studies.shell.programs import needs
 from studies.shell.run import Run
-from studies.shell.scene import metal_of
+from studies.shell.scene.spring import metal_of
 
 Array = NDArray[np.float64]
 Picture = NDArray[np.uint8]

@@ -12,8 +12,6 @@ Everything for a person goes to standard error. What an interrupted study has st
 from __future__ import annotations
 
 import io
-import re
-import sys
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
@@ -21,9 +19,8 @@ from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from functools import cached_property, partial
-from operator import attrgetter
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, TypeVar
+from typing import TYPE_CHECKING, Literal, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -33,7 +30,7 @@ from contact import ContactError
 from studies import letter
 from studies.physics.least_model import TRACE_EXCESS, least_modes
 from studies.physics.one_mode import doubts, with_restitution
-from studies.shell.columns import columns_of, csv_text
+from studies.shell.columns import columns_of, csv_text, numbers_in, print_table
 from studies.shell.executors import pool_of, progress, say
 from studies.shell.files import (
     SCHEMA,
@@ -45,7 +42,8 @@ from studies.shell.files import (
     versions,
     write_atomically,
 )
-from studies.shell.scene import Scene, of_the_letter, size_in_words, spring_in_words
+from studies.shell.scene import Scene, of_the_letter
+from studies.shell.scene.spring import size_in_words, spring_in_words
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -60,17 +58,8 @@ OWN_FILES = {
 """What every study leaves."""
 
 MOST_FINDINGS = 3
-
-NAMES = re.compile(r"\bp\d+|Eqs?\. \(\d\)|Figs?\. \d|[Mm]odes? \d+|\[\d+\]")
-"""Words with digits that are no numbers."""
-
 T = TypeVar("T")
 S = TypeVar("S")
-
-
-def numbers_in(sentence: str) -> list[str]:
-    """The numbers of a sentence; p10, Eq. (1), Fig. 2, mode 1 and note [11] are names."""
-    return re.findall(r"\d[\d.,]*(?:e[-+]?\d+| × 10)?", NAMES.sub("", sentence))
 
 
 @dataclass(kw_only=True)
@@ -209,28 +198,9 @@ class Run:
         show: Sequence[str] | None = None,
         words: Mapping[str, str] | None = None,
     ) -> Path:
-        """NAME.csv of rows of the dataclass `of`; on the terminal the fields and properties `show`.
-
-        `words` say what the fields of a row hold that does not say it itself (``studies.shell.columns``).
-        """
-        from rich.console import Console
-        from rich.table import Table
-
+        """NAME.csv of rows of the dataclass `of`; on the terminal what to `show`, words as in `columns_of`."""
         columns = columns_of(of, rows, words)
-        shown = list[tuple[str, Callable[[Any], object]]]()
-        for seen in dict.fromkeys([one.field for one in columns] if show is None else show):
-            own = [(one.name, one.cell) for one in columns if one.field == seen]
-            shown += own or [(seen, attrgetter(seen))]  # a property is text for a person
-        if shown:
-            table = Table(title=caption, title_justify="left", box=None, pad_edge=False)
-            for heading, _ in shown:
-                table.add_column(heading, justify="right", overflow="fold")
-            for row in rows:
-                table.add_row(*(_cell(cell(row)) for _, cell in shown))
-            terminal = sys.stderr.isatty()
-            Console(file=sys.stderr, width=None if terminal else 200, markup=False, highlight=False).print(
-                table
-            )
+        print_table(columns, rows, caption, show)
         about = [{"name": c.name, "heading": c.heading, "unit": c.unit, "note": c.note} for c in columns]
         path = self.path(f"{name}.csv", caption, columns=about)
         return write_atomically(path, csv_text(columns, rows).encode())
@@ -328,12 +298,3 @@ def _tried(function: Callable[[S], T], item: S) -> tuple[T | None, str]:
         return function(item), ""
     except (ContactError, Refusal) as error:
         return None, str(error) or type(error).__name__
-
-
-def _cell(value: object) -> str:
-    """A cell of a table for a person."""
-    if value is None or (isinstance(value, float) and np.isnan(value)):
-        return "-"
-    if isinstance(value, float | np.floating):
-        return f"{value:.5g}"
-    return {True: "yes", False: "no"}[value] if isinstance(value, bool) else str(value)

@@ -12,7 +12,8 @@ from contact.orbits import born
 from studies.experiment.time_trace.film import drawn_shapes, film_orbit
 from studies.shell import film
 from studies.shell.film import Moment, Scenery, can_encode, stage_of, write_gif, written_as_mp4
-from studies.shell.scene import beam_at, metal_of, modes_of
+from studies.shell.scene import beam_at, modes_of
+from studies.shell.scene.spring import metal_of
 
 COARSE = {"spring.elements_per_leg": 20, "spring.elements_on_arc": 12, "modes.count": 12}
 

@@ -14,7 +14,7 @@ from studies.measurement.identify.displacement import UNITS
 from studies.measurement.identify.profiles import Profile, rows_of
 from studies.measurement.identify.result import Fit
 from studies.physics.parameters import parameters_of
-from studies.shell.columns import minus, written
+from studies.shell.columns import minus, prefixed, written
 from studies.shell.run import Run
 
 TRADE, NOTABLE, MOST, UNLIKE = 0.95, 0.5, 10, 2.0
@@ -23,14 +23,6 @@ a fitted amplitude to a given one that contradicts it (clamped beams: 1.57)."""
 
 SHOWN = ("record", "parameter", "value", "interval", "began", "in_scene")
 """Columns of the estimates on the terminal."""
-
-
-def prefixed(size: float, unit: str) -> tuple[float, str]:
-    """Scale and unit that a person would choose for a number of this size."""
-    powers = (9, 6, 3, 0) if unit[0] == "N" else (0, -3, -6) if unit in ("s", "m", "kg") else (0,)
-    power = next((power for power in powers if size >= 10.0**power), powers[-1])
-    found = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "\u00b5"}[power] + unit
-    return 10.0**power, {"mkg": "g", "\u00b5kg": "mg"}.get(found, found)
 
 
 @dataclass(frozen=True)

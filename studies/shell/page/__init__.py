@@ -102,14 +102,11 @@ class Stored:
         return line if self.letters else OF_A_FIGURE.sub(lambda match: match[2].upper(), line)
 
     @property
-    def account(self) -> list[tuple[str, str]]:
-        """The docstring of the study, "prose" or "as it is" with each paragraph."""
-        blocks = [
-            block
-            for block in account_of(self.study).split("\n\n")[1:]
-            if self.letters or "letter" not in block or block.startswith("Run:")
-        ]
-        return [("as it is" if SET_OUT.search(block) else "prose", block) for block in blocks]
+    def account(self) -> list[tuple[bool, str]]:
+        """The paragraphs of its docstring, and whether their lines are to be filled."""
+        blocks = account_of(self.study).split("\n\n")[1:]
+        own = [one for one in blocks if self.letters or "letter" not in one or one.startswith("Run:")]
+        return [(not SET_OUT.search(block), block) for block in own]
 
     @property
     def notes(self) -> list[str]:
@@ -189,13 +186,7 @@ def _table(path: Path, about: Mapping[str, object]) -> Shown:
 
 
 def read_results(results: Path) -> list[Stored]:
-    """The results of all studies that have any, by chapter.
-
-    Raises
-    ------
-    ValueError
-        If there are none.
-    """
+    """The results of all studies that have any, by chapter; InvalidValue if there are none."""
     numbers = count(1)
     there = [results / name for name in studies() if (results / name / "summary.json").exists()]
     if not there:

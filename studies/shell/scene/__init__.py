@@ -52,11 +52,8 @@ from studies.shell.scene.spring import (
 from studies.shell.scene.spring import elements_of as elements_of
 from studies.shell.scene.spring import first_mode as first_mode
 from studies.shell.scene.spring import free_period as free_period
-from studies.shell.scene.spring import metal_of as metal_of
 from studies.shell.scene.spring import modes_of as modes_of
 from studies.shell.scene.spring import sections_of as sections_of
-from studies.shell.scene.spring import size_in_words as size_in_words
-from studies.shell.scene.spring import spring_in_words as spring_in_words
 from studies.shell.scene.values import Scene, doubts, scene_from_text
 
 SCENES = ROOT / "studies" / "scenes"
