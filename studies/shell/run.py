@@ -198,7 +198,7 @@ class Run:
         show: Sequence[str] | None = None,
         words: Mapping[str, str] | None = None,
     ) -> Path:
-        """NAME.csv of rows of the dataclass `of`; on the terminal what to `show`, words as in `columns_of`."""
+        """NAME.csv of rows of the dataclass `of`; on the terminal what to `show` (``columns``)."""
         columns = columns_of(of, rows, words)
         print_table(columns, rows, caption, show)
         about = [{"name": c.name, "heading": c.heading, "unit": c.unit, "note": c.note} for c in columns]

@@ -178,15 +178,15 @@ def test_a_docstring_says_command_and_outputs_and_the_table_the_run_time(name):
 
 def test_where_nothing_is_found_a_study_says_so(tmp_path, letter_scene, capsys):
     """No orbit within its errors, and no fold in the map."""
-    assert "no orbit exists at one standard error" in next_measurement.answer([], [], next_measurement.Plan())
+    assert "no orbit exists at one standard error" in next_measurement.findings([], [])[0]
     run = Run(study="hysteresis", folder=tmp_path, scene=letter_scene, command="")
     judge(run, [], {}, Causes(at="", **{name: None if "map" in name else 1.0 for name in CAUSES}))
-    assert "nothing to compare" in capsys.readouterr().err and not run.close("done", {})["verdicts"]
+    assert "nothing to compare" in capsys.readouterr().err and not run.close("done", {"rows": []})["verdicts"]
     # nor of higher modes with one mode
     off = {name: Accuracy(description=name, folds=1, median=1.0, worst=1.0) for name in DESCRIPTIONS}
     judge(run, [], off, Causes(at="", **dict.fromkeys(CAUSES, 1.0)), higher=False)
-    kept = run.close("done", {})
-    assert "two_parameters" not in kept["verdicts"] and "higher" not in kept["answers"]["hysteresis"]
+    kept = run.close("done", {"rows": []})
+    assert "two_parameters" not in kept["verdicts"] and "higher" not in " ".join(kept["findings"])
 
 
 def test_a_p1_unstable_down_to_faint_touches_loses_its_stability_there(monkeypatch):

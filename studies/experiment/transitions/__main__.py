@@ -161,12 +161,13 @@ def compare(run: Run, rows: Sequence[Transition], parameters: Sequence[Extracted
         words = "Eq. (1) with the beam's restitution and time delay has the beam's period at"
         run.finding(f"{words} {where}{end}.")
     verdict: Verdict = "agrees" if close == len(found) else "in part" if same else "differs"
-    said = f"the beam's period at {len(same)}, its end to a factor of {NEARLY:g} at {close} of {len(found)}"
+    said = f"the beam's period at {len(same) or 'none'} of {len(found)} frequencies"
+    said += f", its end to a factor of {NEARLY:g} at {close or 'none'}"
     note = f"the map with that restitution has the beam's period at {of_map} of them"
     if close < len(found):
         note += "; elsewhere higher modes still ring when the tip comes back"
     name = "orbit_diagram_two_parameters"
-    run.verdict("two_parameters_born", verdict, found=f"{said} frequencies", note=note, figure=name)
+    run.verdict("two_parameters_born", verdict, found=said, note=note, figure=name)
 
 
 def store(run: Run, found: Sequence[AtFrequency], diagrams: Sequence[Scans]) -> None:

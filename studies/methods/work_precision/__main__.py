@@ -57,9 +57,9 @@ class Cheapest:
     problem: Annotated[str, "problem"]
     method: Annotated[str, "method"]
     time_for_1e_4: Annotated[float | None, "time per drive period for an error of 10⁻⁴ [µs]"]
-    missed_at_1e_4: Annotated[float | None, "share of shallow crossings missed there"]
+    missed_at_1e_4: Annotated[float | None, "share of shallow crossings missed at 10⁻⁴"]
     time_for_1e_8: Annotated[float | None, "time per drive period for an error of 10⁻⁸ [µs]"]
-    missed_at_1e_8: Annotated[float | None, "share of shallow crossings missed there"]
+    missed_at_1e_8: Annotated[float | None, "share of shallow crossings missed at 10⁻⁸"]
 
 
 @study()

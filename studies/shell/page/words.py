@@ -15,7 +15,19 @@ SIGNED = re.compile(rf"(?<![\w.)\]−-])-(?={NUMBER})")
 LONG = re.compile(r"(?<![\w.])(?:\d+\.\d{5,}(?:e[-+]?\d+)?|\d+(?:\.\d+)?e[-+]?\d+)(?!\w|\.\d)")
 """A number with many digits, or with an exponent."""
 
-SIGNS = {"+-": "±", "<->": "↔", "->": "→", " x ": " × ", ">=": "≥", "<=": "≤"}
+SIGNS = {
+    "kg^(-1/2) m^(-1)": "1/(√kg m)",
+    "kg^(-1/2)": "1/√kg",
+    "kg^(1/2)": "√kg",
+    "^2": "²",
+    "^3": "³",
+    "+-": "±",
+    "<->": "↔",
+    "->": "→",
+    " x ": " × ",
+    ">=": "≥",
+    "<=": "≤",
+}
 
 YES_NO = {"True": "yes", "False": "no", "": "–", "inf": "∞"}
 
@@ -54,4 +66,4 @@ def quantity(value: object, unit: str) -> str:
     if not isinstance(value, int | float) or isinstance(value, bool):
         return cell(str(value))
     scale, unit = prefixed(abs(value), unit or "1")
-    return f"{written(value / scale)} {unit}".removesuffix(" 1")
+    return plain(f"{written(value / scale)} {unit}".removesuffix(" 1"))
