@@ -41,7 +41,7 @@ def plain(text: str) -> str:
 
 
 def prose(text: str) -> Markup:
-    """A sentence as HTML: what stands between backticks is code."""
+    """A sentence as HTML: what stands between backticks is code, and an index stands lower."""
     parts = re.split(r"`+([^`]+)`+", plain(text))
     pieces = [
         escape(part) if n % 2 == 0 else Markup("<code>{}</code>").format(part) for n, part in enumerate(parts)
