@@ -16,13 +16,11 @@ import io
 import json
 from argparse import Namespace
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import matplotlib
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import EngFormatter
 from PIL import Image
@@ -33,8 +31,8 @@ from contact.orbits import Shooting, fold_of
 from studies import ROOT, letter
 from studies.physics.descriptions import up_and_down
 from studies.shell.files import json_text, make_folder, write_atomically
-from studies.shell.film import Moment, Scenery, View, stage_of
 from studies.shell.options import Parser, tool
+from studies.shell.painter import draw_rig
 from studies.shell.plotting import BLUE, PALETTE, PURPLE, STYLE, VERMILION, Style
 from studies.shell.scene import beam_at, model_of, modes_of, read_scene
 
@@ -47,7 +45,6 @@ EXCESSES = np.linspace(-1.495, 1.205, 46)
 """Excesses in the diagram, in units of the hysteresis; none lies on the fold or on grazing."""
 
 LARGE = STYLE | {"font.size": 13.0, "axes.labelsize": 13.0, "xtick.labelsize": 11.0, "ytick.labelsize": 11.0}
-STEEL, DARK, PALE = "#5A6470", "#4A4A4A", "#A08738"
 
 
 def orbit_drawn() -> Drawn:
@@ -81,42 +78,12 @@ def costs_drawn() -> Drawn:
     return {name: {key: float(cell) if cell else None for key, cell in row.items()} for name, row in rows}
 
 
-def draw_spring(axes: Axes, drawn: Drawn) -> None:
-    """The spring at the impact, and paler at rest and at its lowest, with the names of what is seen."""
-    modes, gap, size = modes_of(SCENE), SCENE.stop.gap_m, (1274, 980)
-    scenery = Scenery.of(modes, ball_radius=SCENE.tip.ball_radius_m, gap=gap, swing=gap)
-    mesh, plate = scenery.mesh, np.array(scenery.plate)
-    coordinates = np.array([drawn["impact"], drawn["lowest"], np.zeros(len(drawn["impact"]))])
-    moving = np.flatnonzero(modes.coupled)[: coordinates.shape[1]]
-    swung = np.tensordot(coordinates, mesh.shapes[moving], 1)
-    shapes, base = mesh.points + swung, np.array([(-0.012, -0.008, -0.019), (0.002, 0.008, 0.019)])
-    room = np.array([np.minimum(scenery.room[0], base[0]), np.maximum(scenery.room[1], base[1])])
-    scenery = replace(scenery, room=room, more=((base, DARK),))
-    towards = np.array([-0.55, 0.42, 0.72])
-    stage, view = stage_of(scenery, towards, size), View.of(towards, room, size[1] / size[0])
-    seen, *others = (stage(Moment(points=points, base=np.zeros(3))).astype(float) for points in swung)
-    pale = [255.0 - share * (255.0 - one) for share, one in zip((0.3, 0.2), others, strict=True)]
-    whole = np.where(np.all(seen == 255.0, axis=2, keepdims=True), np.minimum(*pale), seen).astype(np.uint8)
-    axes.imshow(whole, extent=(-1, 1, -1, 1), aspect="auto")
-    end = int(np.argmax(view(mesh.points)[:, 0]))
-    for name, point, offset, colour, side in (
-        ("plate", np.mean(plate, axis=0), (-16, 12), STEEL, "right"),
-        ("ball", shapes[0][np.unique(mesh.triangles)].mean(axis=0), (-52, 8), STEEL, "right"),
-        ("base", base.mean(axis=0), (0, -42), DARK, "center"),
-        ("damping tape", shapes[0][mesh.hexahedra[len(mesh.hexahedra) // 9, 0]], (-24, 36), DARK, "right"),
-        ("lowest", shapes[1][end], (5, 0), PALE, "left"),
-        ("at rest", shapes[2][end], (5, 0), PALE, "left"),
-    ):
-        line = {"arrowstyle": "-", "color": colour} if name in ("ball", "damping tape") else None
-        look: Style = {"textcoords": "offset points", "ha": side, "va": "center", "arrowprops": line}
-        axes.annotate(name, (*view(point),), offset, color=colour, annotation_clip=False, **look)
-    axes.axis("off")
-
-
 def draw_orbit(drawn: Drawn) -> Figure:
     """The spring at an impact; displacement at the strobes: dots while raised, rings while lowered."""
     figure = Figure(figsize=(12.0, 4.5))
-    draw_spring(figure.add_axes((0.005, 0.06, 4.55 / 12.0, 3.5 / 4.5)), drawn)
+    shapes = [drawn["impact"], drawn["lowest"], np.zeros(len(drawn["impact"]))]
+    axes = figure.add_axes((0.005, 0.06, 4.55 / 12.0, 3.5 / 4.5))
+    draw_rig(axes, SCENE, modes_of(SCENE), shapes, ("", "lowest", "at rest"))
     figure.text(0.012, 0.93, "the spring at an impact of p4, in true scale")
     axes = figure.add_axes((0.51, 0.145, 0.48, 0.835))
     for way, colour, face, size in (("lowered", VERMILION, "none", 6.5), ("raised", BLUE, BLUE, 3.2)):

@@ -202,7 +202,7 @@ def branch(
 ) -> None:
     """A branch of orbits in its order: solid where `stable`, else dashed; dotted where not `admissible`."""
     looks = np.where(admissible, np.where(stable, 0, 1), 2)
-    words = "stable", "unstable", "no orbit: would touch elsewhere too"
+    words = "stable", "unstable", "no orbit: would touch a second time"
     runs = np.split(np.arange(looks.size), np.flatnonzero(np.diff(looks)) + 1)
     for run in sorted(runs, key=lambda run: int(looks[run[0]])):  # in the order of the legend
         k, shown = looks[run[0]], slice(run[0], run[-1] + 2)  # on to the next one: the line has no gap

@@ -1,4 +1,4 @@
-"""Four values of the scene, fitted to four numbers of the letter.
+"""Four values of the scene, fitted to four measured numbers.
 
 Thickness from the free period (40.80 ms), tape from the decay rate of mode 1 (3.56 1/s), gap from the base
 amplitude at grazing (2 mm at the scene's middle drive frequency, for the letter 22.2 Hz), and the mass of

@@ -26,9 +26,11 @@ import numpy as np
 from beam import Modes, write_mode_motion, write_modes
 from studies import letter
 from studies.shell.columns import written
-from studies.shell.film import MOST_FRAMES, Moment, Scenery, stage_of, write_film
+from studies.shell.film import MOST_FRAMES, write_film
 from studies.shell.options import Within
+from studies.shell.painter import Moment, Scenery, draw_rig, stage_of
 from studies.shell.scene import Scene, SceneError, damping_of, free_period, model_of, modes_of
+from studies.shell.scene.spring import size_in_words, spring_in_words
 from studies.shell.study import Run, study
 
 if TYPE_CHECKING:
@@ -133,8 +135,19 @@ def write_shapes(scene: Scene, run: Run, solved: Modes, mode: int, frames: int) 
     motion = run.path("motion.pvd", f"One period of mode {mode + 1} for ParaView.")
     write_mode_motion(motion, solved, mode, frames=frames, largest=largest, ball_radius=radius)
     run.path("motion_frames", "Frames of motion.pvd: points of the spring [m].")
+    words = f"The rig at rest, in true scale: {spring_in_words(scene)}, {size_in_words(scene)}."
+    run.figure("rig", in_house_style(draw_at_rest)(scene, solved), words)
     caption = "Shapes of the lowest modes in the plane of the strip, enlarged to one largest displacement."
     run.figure("modes", in_house_style(draw)(solved), caption)
+
+
+def draw_at_rest(scene: Scene, solved: Modes) -> Figure:
+    """The spring at rest with ball, plate and base."""
+    from studies.shell.plotting import new_figure  # matplotlib is slow to import
+
+    figure, axes = new_figure(height=0.055)
+    draw_rig(axes, scene, solved, [np.zeros(int(np.sum(solved.coupled)))])
+    return figure
 
 
 def write_films(run: Run, solved: Modes, radius: float, count: int, frames: int) -> None:

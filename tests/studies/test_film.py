@@ -10,8 +10,9 @@ from beam import BRASS, DAMPING_TAPE, STEEL
 from contact import StroboscopicMap
 from contact.orbits import born
 from studies.experiment.time_trace.film import drawn_shapes, film_orbit
-from studies.shell import film
-from studies.shell.film import Moment, Scenery, can_encode, stage_of, write_gif, written_as_mp4
+from studies.shell import painter
+from studies.shell.film import can_encode, write_gif, written_as_mp4
+from studies.shell.painter import Moment, Scenery, stage_of
 from studies.shell.scene import beam_at, modes_of
 from studies.shell.scene.spring import metal_of
 
@@ -41,7 +42,7 @@ def test_the_drawn_ball_meets_the_drawn_plate_when_the_tip_has_moved_by_the_gap(
     assert low[1] - ball[:, 1].max() == pytest.approx(gap, abs=0.02 * radius)
     assert low[0] < ball[:, 0].mean() < high[0]
     assert Scenery.of(modes, ball_radius=radius, swing=gap).plate is None
-    assert scenery.strip == film.BRASS and [*map(metal_of, (BRASS, STEEL, DAMPING_TAPE))] == [
+    assert scenery.strip == painter.BRASS and [*map(metal_of, (BRASS, STEEL, DAMPING_TAPE))] == [
         "brass",
         "steel",
         "",
@@ -80,10 +81,10 @@ def test_a_picture_shows_what_moves(scene, modes):
     touched = Moment(points=rest.points, base=rest.base, touched=True)
     stage = stage_of(scenery)
     pictures = [stage(moment) for moment in (rest, swung, touched, rest)]
-    assert {picture.shape for picture in pictures} == {(film.HEIGHT, film.WIDTH, 3)}
+    assert {picture.shape for picture in pictures} == {(painter.HEIGHT, painter.WIDTH, 3)}
     assert (pictures[0] == pictures[3]).all()
     for other in pictures[1:3]:
-        assert 50 < np.any(pictures[0] != other, axis=2).sum() < 0.5 * film.WIDTH * film.HEIGHT
+        assert 50 < np.any(pictures[0] != other, axis=2).sum() < 0.5 * painter.WIDTH * painter.HEIGHT
     # nothing is cut off: the border is white
     for picture in pictures:
         assert picture[0].min() == picture[-1].min() == picture[:, 0].min() == picture[:, -1].min() == 255
@@ -91,11 +92,11 @@ def test_a_picture_shows_what_moves(scene, modes):
 
 def test_what_is_near_hides_what_is_far():
     """A closed box shows the three faces that look to the viewer, and each face looks outwards."""
-    faces = film.box(np.array([(-1.0, -2.0, -3.0), (1.0, 2.0, 3.0)]))
+    faces = painter.box(np.array([(-1.0, -2.0, -3.0), (1.0, 2.0, 3.0)]))
     normal = np.cross(faces[:, 1] - faces[:, 0], faces[:, 2] - faces[:, 0])
     assert len(faces) == 6 * 64 and np.all(np.sum(normal * faces.mean(axis=1), axis=1) > 0.0)
     assert np.linalg.norm(normal, axis=1).sum() == pytest.approx(2.0 * (2 * 4 + 4 * 6 + 6 * 2))
-    view = film.View.of(np.array([0.2, 0.3, 0.9]), np.array([(-1.0, -2.0, -3.0), (1.0, 2.0, 3.0)]), 0.5)
+    view = painter.View.of(np.array([0.2, 0.3, 0.9]), np.array([(-1.0, -2.0, -3.0), (1.0, 2.0, 3.0)]), 0.5)
     places, shades = view.painted(faces, np.ones((len(faces), 3)))
     assert len(places) == 3 * 64 and np.abs(places).max() < 1.0 and len(np.unique(shades.round(9))) == 3
     np.testing.assert_allclose(view.axes @ view.axes.T, np.eye(3), atol=1e-15)

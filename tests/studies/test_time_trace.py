@@ -13,7 +13,7 @@ from contact import Collision, first_collision
 from contact.collision import before_collision
 from studies.experiment.time_trace.film import strip
 from studies.experiment.time_trace.model import WORDS, close_up
-from studies.shell.film import WIDTH
+from studies.shell.painter import WIDTH
 from studies.shell.plotting import style_of
 from studies.shell.scene import beam_at, single_mode_of
 

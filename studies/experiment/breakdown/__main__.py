@@ -144,7 +144,7 @@ def store(run: Run, scans: Sequence[tuple[Outcome, Mapping[str, Diagram]]], graz
 
 def tell(run: Run, beam: Outcome, found: Outcome | None, own: Island) -> None:
     """The findings: what is born of the calibrated beam, and of the one found; the island of Eq. (1)."""
-    born = word(beam.born_period) if beam.born_period else "no period"
+    born = word(beam.born_period) if beam.born_period else "no periodic motion"
     saw = f"; the letter saw p{BORN_PERIOD}" * run.letters
     run.finding(f"With period and damping of Fig. 5 the calibrated beam has {born} just above grazing{saw}.")
     if found is not None:

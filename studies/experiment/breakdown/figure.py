@@ -56,9 +56,9 @@ def draw_scans(
         pair[0].set_xlim(1e2 * min(float(d.excess.min()) for d in ways.values()) - 0.3, 0.02)
         pair[1].set_xlim(-0.03, 1e2 * HIGHEST + 0.03)
         plotting.panel(pair[0], number, title_of(outcome, tau))
-        begins = f"p$_{{{outcome.born_period}}}$ begins" if outcome.born_period else "no period begins"
+        begins = f"p$_{{{outcome.born_period}}}$ begins" if outcome.born_period else "no periodic motion"
         seen = f" (letter: p$_{{{BORN_PERIOD}}}$)" if letters and outcome.tip_mass_kg else ""
-        pair[1].set_title(f"{begins}{seen}", loc="right")
+        pair[1].set_title(f"{begins}{seen}", loc="left")
         plotting.label(pair[0].yaxis, "tip" if number == 0 else "read-out", "mm")
         if outcome.fold_p3 is not None:
             line: plotting.Style = {"color": GREEN, "linestyle": "-.", "linewidth": 0.9, "zorder": 0}

@@ -1,4 +1,4 @@
-"""The letter's other claims, each with the numbers that decide it.
+"""Loss, secondary bifurcations and universality, with the numbers that decide.
 
 Claims (letter 1996), for the Nordmark map (Eqs. (2), (3)), for Eq. (1) and for springs with many modes:
 

@@ -67,7 +67,7 @@ def speed(rows: Sequence[Approach], letters: bool) -> Figure:
     for axis, bounds in zip(axes, ((0.0, 1.05), (1e-2, 1e1), (0.0, 1.1)), strict=True):
         axis.set_xscale("log")
         if letters:
-            words = "letter: stability of the amplitude"
+            words = "letter: stability of the drive amplitude"
             axis.axvspan(least, letter.AMPLITUDE_STABILITY, color="0.92", zorder=-1, lw=0, label=words)
         axis.set(xlim=(least, most), ylim=bounds)
     if letters:

@@ -177,7 +177,9 @@ def judge(
     size, most = written(off["map"].median, 3), max(factors, key=lambda name: abs(math.log(factors[name])))
     run.finding(f"The map's hysteresis differs from the beam's by a factor of {size} in the median.")
     if abs(math.log(factors[most])) > math.log(NEARLY):
-        words = f"The largest cause is the {most.replace('_', ' ')}, which multiplies the hysteresis by"
+        words = (
+            f"Its causes partly cancel; the largest, {most.replace('_', ' ')}, multiplies the hysteresis by"
+        )
         run.finding(f"{words} {written(factors[most], 3)}.")
     if higher:
         words = (

@@ -18,9 +18,9 @@ from studies.shell.plotting import BLACK, BLUE, GREEN, GUIDE, LETTER, NOTE, PAGE
 from studies.shell.scene import Scene, band_of, corresponding, nordmark_at, periods_of
 
 CURVES = (
-    "The letter's Fig. 3, computed: where the p_m orbits end when the amplitude is lowered, against the "
-    "drive frequency, for m = 3 to 10; below the same on a logarithmic scale. The beam follows the bands of "
-    "the map at another size. Crosses are folds whose orbit would touch the plate elsewhere too."
+    "Where the orbits p_m end when the drive amplitude is lowered, against the drive frequency; below, the "
+    "same on a logarithmic scale. Each m has its own curve; its hysteresis vanishes at the upper edge of "
+    "a band. Crosses are folds of orbits that would touch the plate a second time."
 )
 
 BRANCH = (
@@ -33,7 +33,7 @@ BANDS = "Bands of p_m in the plane of α and γ as ρ goes to 0, and the path of
 THIN = np.array([1.0, 1.0005])
 """Width of a mark for an edge whose error is not known."""
 
-EVENTS = {"grazing": "another touch grazes", "undecided": "event not resolved"}
+EVENTS = {"grazing": "a second touch grazes", "undecided": "event not resolved"}
 """Event of a branch -> its name in the picture, where it is another one."""
 
 STYLES: dict[str, dict[str, Any]] = {
@@ -66,7 +66,7 @@ def draw_curves(scene: Scene, rows: Sequence[Folds], *, letters: bool) -> Figure
     axes[0].axhline(0.0, **GUIDE, label="grazing")
     axes[1].set_yscale("log")
     if letters:
-        stable = "letter: stability of the amplitude"
+        stable = "letter: stability of the drive amplitude"
         plotting.mark_letter(axes[1].yaxis, letter.AMPLITUDE_STABILITY, words=stable, along=0.01)
     plotting.label(axes[0].yaxis, "$F_m/F_g - 1$")
     plotting.label(axes[1].yaxis, plotting.HYSTERESIS)
@@ -83,7 +83,7 @@ def curves(axis: Axes, rows: Sequence[Folds], sign: float) -> None:
             shown = [(row.frequency_hz, end) for row, end in ends if row.m == m and sign * end < 0.0]
             axis.plot(*np.array(shown).reshape(-1, 2).T, **style, linewidth=0.9)
     crossed = [(row.frequency_hz, end) for row, end in ends if sign * end < 0.0 and not row.beam_admissible]
-    look: plotting.Style = {"markersize": 3.5, "color": VERMILION, "label": "beam, would touch elsewhere too"}
+    look: plotting.Style = {"markersize": 3.5, "color": VERMILION, "label": "beam, would touch a second time"}
     if crossed:
         axis.plot(*np.array(crossed).T, "x", **look)
 

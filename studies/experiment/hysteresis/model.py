@@ -75,9 +75,9 @@ class Folds:
     two_parameters: Annotated[float | None, "one mode, restitution and delay"] = None
     all_mode_kick: Annotated[float | None, "kick of all modes"] = None
     beam: float | None = None
-    beam_admissible: Annotated[bool | None, "the beam's orbit exists; it would touch elsewhere otherwise"] = (
-        None
-    )
+    beam_admissible: Annotated[
+        bool | None, "the beam's orbit exists; it would touch a second time otherwise"
+    ] = None
 
     def ratio(self, description: str, reference: str = "beam") -> float | None:
         """Its hysteresis over that of the reference; None unless both end on the same side of grazing."""

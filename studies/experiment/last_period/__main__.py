@@ -1,4 +1,4 @@
-"""Why p10 is the letter's last period, and what errors can change.
+"""The highest period that begins at grazing, and what errors can change.
 
 Claims (letter 1996): T = 40.80 +- 0.02 ms; the last of the six transitions, at 23.40 Hz, goes to p10; p10 "is
 at the limit of our experimental resolution and stability".  Map, Eq. (1) and beam have p11 there.

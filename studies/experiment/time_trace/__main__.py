@@ -151,9 +151,10 @@ def tell(run: Run, period: int, impacts: int, found: Sequence[Collision], higher
     run.finding(f"{repeats(period).capitalize()}{touches}.")
     if found and math.isfinite(found[0].restitution):
         left = written(found[0].restitution, 2)
-        run.finding(f"Mode 1 leaves a collision with {left} times its approach velocity.")
+        words = "times its approach velocity; higher modes ring with the rest"
+        run.finding(f"Mode 1 leaves a collision with {left} {words}.")
     if found and higher:
-        run.finding(f"Higher modes ring after the impact; the spectrum has a peak at {len(higher)} of them.")
+        run.finding(f"The spectrum has a peak at {len(higher)} of the higher modes.")
 
 
 def judge(run: Run, period: str, seen: int, found: Sequence[Collision], higher: Sequence[int]) -> None:

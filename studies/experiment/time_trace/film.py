@@ -34,18 +34,8 @@ from contact import ImpactKind, ImpactOscillator, State, simulate
 from contact.orbits import Settled
 from studies.experiment.time_trace.model import Trace, touching
 from studies.shell.columns import minus
-from studies.shell.film import (
-    DRIVE,
-    RATE,
-    TOUCHED,
-    WIDTH,
-    Below,
-    Moment,
-    Picture,
-    Scenery,
-    stage_of,
-    write_film,
-)
+from studies.shell.film import RATE, Below, write_film
+from studies.shell.painter import DRIVE, TOUCHED, WIDTH, Moment, Picture, Scenery, stage_of
 from studies.shell.scene import Scene, modes_of
 from studies.shell.study import Run
 

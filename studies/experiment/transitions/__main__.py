@@ -79,9 +79,8 @@ def transitions(
     for name in reversed(TITLES):
         stem = "orbit_diagram" if name == "beam" else f"orbit_diagram_{name}"
         drawn = draw(scene.readout.quantity, rows, diagrams, name, letters=run.letters)
-        run.figure(
-            stem, drawn, f"Strobed points while the drive amplitude is raised and lowered: {TITLES[name]}."
-        )
+        caption = "Displacement once in each drive period, while the amplitude is raised and lowered"
+        run.figure(stem, drawn, f"{caption}: {TITLES[name]}.")
     if (other := ends_beside_folds(rows)) and run.model_choice:
         run.warn(f"{other}: modes were chosen for folds, and more of them (modes.count) can move this end")
     tell(run, rows)
@@ -125,7 +124,7 @@ def tell(run: Run, rows: Sequence[Transition]) -> None:
     depth, m = min(((row.excess_down or 0.0, row.period) for row in beams), default=(0.0, 0))
     if depth < 0.0:
         words = f"When the amplitude is lowered again, the beam's p{m} remains until"
-        run.finding(f"{words} {written(-100.0 * depth, 2)} % below grazing, the widest hysteresis of all.")
+        run.finding(f"{words} {written(-100.0 * depth, 2)} % below grazing, the widest of these hystereses.")
 
 
 def judge(run: Run, rows: Sequence[Transition]) -> bool:

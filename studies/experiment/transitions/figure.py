@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from studies import letter
 from studies.experiment.transitions.model import Scans, Transition
-from studies.physics.descriptions import Diagram
+from studies.physics.descriptions import TITLES, Diagram
 from studies.shell import plotting
 from studies.shell.plotting import GUIDE
 
@@ -38,6 +38,7 @@ def draw(
             seen = "" if row.letter is None else f" (letter p$_{{{row.letter}}}$)"
             words = f"p$_{{{row.period}}}$" if row.period else "no period"
             plotting.panel(axis, number, f"{row.frequency_hz:.2f} Hz: {words}{seen}")
+        figure.suptitle(TITLES[name], fontweight="bold")
         sideways = (plotting.EXCESS, "10$^{-3}$") if name == "map" else ("drive amplitude", "mm")
         upwards = {
             "map": ("$x$ of the map", "1"),
@@ -79,6 +80,6 @@ def panel(axis: Axes, row: Transition, found: Mapping[str, Diagram], letters: bo
     if letters:
         stable = 1e3 * (letter.AMPLITUDE_STABILITY if grazing is None else letter.AMPLITUDE_STABILITY_M)
         band: plotting.Style = {"color": "0.88", "linewidth": 0, "zorder": 0}
-        axis.axvspan(at - stable, at + stable, **band, label="letter: stability of the amplitude")
+        axis.axvspan(at - stable, at + stable, **band, label="letter: stability of the drive amplitude")
     axis.axvline(at, **GUIDE, label="grazing")
     axis.locator_params(axis="x", nbins=4)

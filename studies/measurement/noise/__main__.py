@@ -1,4 +1,4 @@
-"""Fig. 3 of the letter as an experiment with a noisy drive shows it.
+"""Hysteresis as an experiment with a noisy drive shows it.
 
 Claims (letter 1996): "the measured hysteresis differs from the prediction"; the amplitude has a long-term
 stability of 0.5 um of 2 mm, 2.5e-4.

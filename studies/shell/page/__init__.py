@@ -17,11 +17,10 @@ import base64
 import csv
 import json
 import re
-import shlex
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
-from itertools import count, islice, pairwise
+from itertools import count, islice
 from pathlib import Path
 
 from jinja2 import Environment, FileSystemLoader
@@ -30,11 +29,14 @@ from beam import InvalidValue
 from studies import letter
 from studies.shell.files import write_atomically
 from studies.shell.page import words
-from studies.shell.programs import ALL, CHAPTERS, COMMAND, FOLDER, account_of, chapter, first_line, studies
+from studies.shell.programs import CHAPTERS, COMMAND, FOLDER, account_of, chapter, first_line, studies
 from studies.shell.scene.values import KEYS
 
 MOST_ROWS = 40
 """Of a table on the page; a longer one is named and left to its file."""
+
+MOST_IN_SHORT = 5
+"""Sentences on top of the page: the first finding of the first studies."""
 
 LARGEST_PICTURE = 4_000_000
 """Bytes of a picture or film that goes into the page; a larger one is linked."""
@@ -43,31 +45,29 @@ VERDICTS = {
     "agrees": "agree",
     "in part": "agree in part",
     "differs": "differ",
-    "fitted": "agree because the scene was fitted to them",
-    "open": "are open: the letter prints no number, or the study has not run",
+    "fitted": "agree, for the spring was fitted to them",
+    "open": "open, for the letter prints no number or the study has not run",
 }
 """A verdict, and what the points with it do."""
-
-KEPT = ("--scene", "--set", "--out", "--style")
-"""Options that every study takes with a value."""
 
 SET_OUT = re.compile(r"^(    |(Run|Writes):)", re.MULTILINE)
 """In a paragraph whose lines are not to be filled: a formula, a table, a list of commands."""
 
+LETTERS = re.compile(r"letter|Figs?\. \d")
 OF_A_FIGURE = re.compile(r"^(Fig\. \d of the letter): (.)")
-"""At the head of a title."""
+"""What speaks of the letter; the head of a title that does."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Shown:
-    """A picture, `source` a data URI or a link; or a table with its headings, cut off where it is long."""
+    """A picture, `source` a data URI or a link; or a table with headings and notes, cut off if long."""
 
     name: str
     caption: str
     number: int = 0
     source: str = ""
     width: int = 0
-    headings: Sequence[str] = ()
+    headings: Sequence[tuple[str, str]] = ()
     rows: Sequence[Sequence[str]] = ()
     long: bool = False
 
@@ -105,7 +105,7 @@ class Stored:
     def account(self) -> list[tuple[bool, str]]:
         """The paragraphs of its docstring, and whether their lines are to be filled."""
         blocks = account_of(self.study).split("\n\n")[1:]
-        own = [one for one in blocks if self.letters or "letter" not in one or one.startswith("Run:")]
+        own = [one for one in blocks if self.letters or not LETTERS.search(one) or one.startswith("Run:")]
         return [(not SET_OUT.search(block), block) for block in own]
 
     @property
@@ -173,8 +173,10 @@ def _table(path: Path, about: Mapping[str, object]) -> Shown:
     known = [_object(one) for one in listed] if isinstance(listed, list) else []
     known = known if len(known) == len(names) else [{"heading": words.cell(name)} for name in names]
     full = [n for n in range(len(names)) if any(row[n] for row in rows if len(row) == len(names))]
+    units = [f" ({one['unit']})" if one.get("unit") else "" for one in known]
     headings = [
-        f"{one.get('heading')} ({one['unit']})" if one.get("unit") else str(one["heading"]) for one in known
+        (f"{one.get('heading')}{unit}", str(one.get("note") or ""))
+        for one, unit in zip(known, units, strict=True)
     ]
     return Shown(
         name=path.stem,
@@ -256,12 +258,14 @@ def write_page(results: Path) -> tuple[Path, list[Stored], list[str]]:
         first=first,
         letters=letters,
         chapters=[(title, own) for title, own in chapters if own],
-        picture=next((figure for stored in found for figure in stored.figures), None),
+        picture=next((figure for one in found for figure in one.figures), None),
+        rig=next((figure for one in found for figure in one.figures if figure.name == "rig"), None),
+        short=[(one.study, one.findings[0]) for one in found if one.findings][:MOST_IN_SHORT],
         small=[stored.study for stored in found if _object(stored.summary.get("settings")).get("quick")],
         others=[one.study for one in found if one.manifest.get("size") != first.manifest.get("size")],
         count=len(found),
         missing=missing,
-        command=command_for_the_rest(first),
+        command=words.command_for_the_rest(str(first.manifest.get("command") or "")),
         points=points,
         verdicts=VERDICTS,
         ground=list(ground(first)),
@@ -270,15 +274,6 @@ def write_page(results: Path) -> tuple[Path, list[Stored], list[str]]:
     folder = results / "report"
     folder.mkdir(parents=True, exist_ok=True)
     return write_atomically(folder / "index.html", text.encode()), found, missing
-
-
-def command_for_the_rest(stored: Stored) -> str:
-    """The command that runs every study on the scene of this one, in the same form, into the same folder."""
-    given, kept = shlex.split(str(stored.manifest.get("command") or "")), list[str]()
-    for word, following in pairwise([*given, ""]):
-        if word == "--quick" or word.partition("=")[0] in KEPT:
-            kept += [word, following] if word in KEPT and following else [word]
-    return f"{ALL} {shlex.join(kept)}".rstrip()
 
 
 def told_page(results: Path) -> str:
@@ -294,4 +289,8 @@ def in_words(path: Path, found: Sequence[Stored], missing: Sequence[str]) -> str
     """The page in one sentence, with the command that completes it."""
     count = f"{len(found)} of {len(found) + len(missing)}" if missing else f"all {len(found)}"
     page = f"page of {count} studies, {path.stat().st_size / 1e6:.1f} MB: {path}"
-    return f"{page}; {command_for_the_rest(found[0])} makes the rest" if missing else page
+    return (
+        f"{page}; {words.command_for_the_rest(str(found[0].manifest.get('command') or ''))} makes the rest"
+        if missing
+        else page
+    )

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import re
+import shlex
+from itertools import pairwise
 
 from markupsafe import Markup, escape
 
 from studies.shell.columns import prefixed, written
+from studies.shell.programs import ALL
 
 NUMBER = r"\d[\d,]*(?:\.\d+)?(?:e[-+]?\d+)?"
 SIGNED = re.compile(rf"(?<![\w.)\]−-])-(?={NUMBER})")
@@ -25,11 +28,13 @@ SIGNS = {
     "<->": "↔",
     "->": "→",
     " x ": " × ",
+    " - ": " − ",
     ">=": "≥",
     "<=": "≤",
 }
 
-YES_NO = {"True": "yes", "False": "no", "": "–", "inf": "∞"}
+CELLS = {"True": "yes", "False": "no", "": "–", "inf": "∞", "single_mode": "Eq. (1)"}
+"""What a page writes for these cells."""
 
 
 def plain(text: str) -> str:
@@ -43,18 +48,22 @@ def plain(text: str) -> str:
 def prose(text: str) -> Markup:
     """A sentence as HTML: what stands between backticks is code, and an index stands lower."""
     parts = re.split(r"`+([^`]+)`+", plain(text))
-    pieces = [
-        escape(part) if n % 2 == 0 else Markup("<code>{}</code>").format(part) for n, part in enumerate(parts)
-    ]
+    code = Markup("<code>{}</code>")
+    pieces = [code.format(part) if n % 2 else _lowered(str(escape(part))) for n, part in enumerate(parts)]
     return Markup("").join(pieces)
+
+
+def _lowered(text: str) -> Markup:
+    """HTML in which the index of a symbol, as in F_m, stands lower."""
+    return Markup(re.sub(r"\b([A-Za-zρ])_([A-Za-z0-9])\b", r"\1<sub>\2</sub>", text))
 
 
 def cell(text: str) -> str:
     """A cell of a table: a number to four digits, words without underscores, yes or no, a dash."""
-    if text in YES_NO:
-        return YES_NO[text]
+    if text in CELLS:
+        return CELLS[text]
     try:
-        return written(float(text))
+        return written(float(text)).replace(" ", "\u00a0")
     except ValueError:
         return plain(re.sub(r"(?<=\w)_(?=\w)", " ", text))
 
@@ -67,3 +76,16 @@ def quantity(value: object, unit: str) -> str:
         return cell(str(value))
     scale, unit = prefixed(abs(value), unit or "1")
     return plain(f"{written(value / scale)} {unit}".removesuffix(" 1"))
+
+
+KEPT = ("--scene", "--set", "--out", "--style")
+"""Options that every study takes with a value."""
+
+
+def command_for_the_rest(command: str) -> str:
+    """The command that runs every study on the scene of this command, in the same form and folder."""
+    given, kept = shlex.split(command), list[str]()
+    for word, following in pairwise([*given, ""]):
+        if word == "--quick" or word.partition("=")[0] in KEPT:
+            kept += [word, following] if word in KEPT and following else [word]
+    return f"{ALL} {shlex.join(kept)}".rstrip()
