@@ -76,12 +76,7 @@ def last_period(
 
     causes = causes_of(scene, model)[: 20 if run.quick else None]
     effects = run.map(partial(effect_of, scene, 1.5 if run.quick else 1.05), causes, "causes of p10")
-    run.table(
-        "p10",
-        effects,
-        "The periods that are born with each cause at the frequencies of the letter.",
-        of=Effect,
-    )
+    run.table("p10", effects, "The periods that begin with each cause at six drive frequencies.", of=Effect)
     intervals = pair_intervals(scene, run)
 
     letters = [(row.frequency_hz, row.m) for row in base if row.description == "Eq. (1)" and row.m > 1]

@@ -152,7 +152,7 @@ class DriveKeys:
         "harmonic", "", "harmonic motion of the base, or a base at rest", LETTER, choices=("harmonic", "none")
     )
     frequencies_hz: tuple[float, ...] = key(
-        (20.90, 21.50, 22.20, 22.60, 23.05, 23.40), "Hz", "drive frequencies, those of Fig. 2", LETTER
+        (20.90, 21.50, 22.20, 22.60, 23.05, 23.40), "Hz", "drive frequencies", LETTER
     )
 
 

@@ -24,7 +24,7 @@ def draw_survival(scene: Scene, rows: Sequence[Survival], letters: bool) -> Figu
     for row in (row for row in folded if row.tip_mass_kg == scene.tip.mass_kg):
         place = radii.index(row.bend_radius_m), gaps.index(row.gap_m)
         change = 100.0 * row.kappa * (row.gap_m / row.length_m) ** 2
-        colour = plotting.tint(plotting.SKY, row.survive / count) if letters else "white"
+        colour = plotting.tint(plotting.SKY, (row.survive or 0) / count) if letters else "white"
         chart.scatter(*place, s=140, color=colour, edgecolor="0.6" if letters else "white", linewidth=0.5)
         words = str(row.survive) if letters else written(round(change, 2), 1)
         chart.annotate(words, place, ha="center", va="center")

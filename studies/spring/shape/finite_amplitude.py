@@ -70,7 +70,7 @@ class Survival:
         "effective period [s]; none where no small deviation returns after a period",
     ]
     born_period: Annotated[Mapping[str, int | None], "period at the excess 0.001; 0: not settled"]
-    survive: Annotated[int, "periods as the letter saw them, at the excesses 0.00025 and 0.001"]
+    survive: Annotated[int | None, "periods as the letter saw them, at the excesses 0.00025 and 0.001"]
 
 
 def reading_of(scene: Scene, reading: str, radius: float, ball: float) -> Scene:
@@ -160,7 +160,9 @@ def survivals(scene: Scene, gaps: Sequence[float], spring: Key) -> list[Survival
                 kappa=backbone.kappa,
                 effective_period_s=dict(zip(places, map(effective, modes), strict=True)),
                 born_period=dict(zip(places, born, strict=True)),
-                survive=sum(a == b == c is not None for a, b, c in zip(wanted, low, born, strict=True)),
+                survive=sum(a == b == c for a, b, c in zip(wanted, low, born, strict=True) if a)
+                if any(wanted)
+                else None,
             )
         )
     return rows
