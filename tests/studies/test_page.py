@@ -16,6 +16,7 @@ from studies import letter, report
 from studies.shell import plotting
 from studies.shell.page import judged_points, told_page, write_page
 from studies.shell.page.documentation import module_names, write_site
+from studies.shell.page.words import prose
 from studies.shell.programs import studies
 from studies.shell.run import Run
 from studies.shell.scene import Scene, read_scene
@@ -90,9 +91,7 @@ def test_the_page_counts_the_points_and_names_one_command_for_the_rest(tmp_path,
     stored(tmp_path, letter_scene)
     path, found, missing = write_page(tmp_path)
     text, points = path.read_text(), judged_points(found)
-    assert all(
-        point.says.replace("'", "&#39;").replace("+-", "±") in text for point in letter.POINTS.values()
-    )
+    assert all(str(prose(point.says)) in text for point in letter.POINTS.values())
     assert Counter(one.verdict for one in points) == {"agrees": 1, "differs": 1, "open": len(points) - 2}
     places = {one.key: one.place for one in points}
     assert (places["p3"], places["p10"], places["bands"]) == ("figure-2", "figure-1", "point-bands")

@@ -1,4 +1,4 @@
-"""Loss, secondary bifurcations and universality, with the numbers that decide.
+"""Loss, secondary bifurcations, universality: each with its numbers.
 
 Claims (letter 1996), for the Nordmark map (Eqs. (2), (3)), for Eq. (1) and for springs with many modes:
 

@@ -141,7 +141,9 @@ def repeats(period: int) -> str:
     """When the motion repeats."""
     whole = "each drive period" if period == 1 else f"{period} drive periods"
     return (
-        f"the motion repeats after {whole}" if period else "the motion has no period up to 64 drive periods"
+        f"the settled motion repeats after {whole}"
+        if period
+        else "the motion has no period up to 64 drive periods"
     )
 
 

@@ -14,7 +14,7 @@ from studies.shell import plotting
 
 Array = NDArray[np.float64]
 
-APART = 11.0
+APART = 8.0
 """Least distance of two modes that are both numbered [pt]."""
 
 MOST_DRAWN = 4_000
