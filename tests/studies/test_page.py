@@ -79,7 +79,7 @@ def test_the_page_holds_what_is_stored_and_loads_nothing(tmp_path, letter_scene)
         "&lt;script&gt;no",
         "python -m studies transitions --quick",
         "f T = 20/21",
-        '<a href="#figure-2" title="At 20.90 Hz p1 goes over into p3.">p3</a>',
+        '<a href="#figure-2" title="At 20.90 Hz p1 goes over into p3.">p<sub>3</sub></a>',
     ):
         assert words in text, words
     assert "<b>bold" not in text and "<script>no" not in text

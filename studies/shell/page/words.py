@@ -54,8 +54,8 @@ def prose(text: str) -> Markup:
 
 
 def _lowered(text: str) -> Markup:
-    """HTML in which the index of a symbol, as in F_m, stands lower."""
-    return Markup(re.sub(r"\b([A-Za-zρ])_([A-Za-z0-9])\b", r"\1<sub>\2</sub>", text))
+    """HTML in which the index of a symbol stands lower, as in F_m and p4."""
+    return Markup(re.sub(r"\b(?:([A-Za-zρ])_([A-Za-z0-9])|(p)(\d+))\b", r"\1\3<sub>\2\4</sub>", text))
 
 
 def cell(text: str) -> str:
