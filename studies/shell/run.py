@@ -30,7 +30,8 @@ from contact import ContactError
 from studies import letter
 from studies.physics.least_model import TRACE_EXCESS, least_modes
 from studies.physics.one_mode import doubts, with_restitution
-from studies.shell.columns import columns_of, csv_text, numbers_in, print_table
+from studies.shell.columns import columns_of, csv_text, print_table
+from studies.shell.digits import numbers_in
 from studies.shell.executors import pool_of, progress, say
 from studies.shell.files import (
     SCHEMA,

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from typing import Annotated
 
 from studies.physics.calibration import Targets, calibrate_all, collision_at
-from studies.shell.columns import written
+from studies.shell.digits import written
 from studies.shell.scene import Scene, beam_at, harmonic
 from studies.shell.study import Run, study
 

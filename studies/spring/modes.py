@@ -25,7 +25,7 @@ import numpy as np
 
 from beam import Modes, write_mode_motion, write_modes
 from studies import letter
-from studies.shell.columns import written
+from studies.shell.digits import written
 from studies.shell.film import MOST_FRAMES, write_film
 from studies.shell.options import Within
 from studies.shell.painter import Moment, Scenery, draw_rig, stage_of

@@ -13,7 +13,7 @@ UNFIT = re.compile(
 
 
 def seen(text: str) -> str:
-    """What a reader sees of a page, but for commands, formulas and names of files."""
+    """The text of a page, without commands, formulas and names of files."""
     text = re.sub(r"<(style|pre|code|script)\b.*?</\1>", "", text, flags=re.DOTALL)
     return re.sub(r"<[^>]*>", "\n", re.sub(r"<a href=[^>]*>[^<]*\.\w+</a>", "", text))
 

@@ -102,7 +102,7 @@ def test_the_page_counts_the_points_and_names_one_command_for_the_rest(tmp_path,
 
 @pytest.mark.filterwarnings("ignore::beam.SuspiciousValue")
 def test_the_page_of_another_spring_is_its_own(tmp_path):
-    """Title and sentences are those of the ruler, and no point of the letter is judged."""
+    """Its title names the ruler, and no point of the letter is judged."""
     stored(tmp_path, read_scene("steel_ruler"))
     path, _, _ = write_page(tmp_path)
     text = path.read_text()

@@ -45,7 +45,7 @@ from studies.experiment.breakdown.model import (
 )
 from studies.physics.descriptions import Diagram, StrobePoint, strobe_points_of, word
 from studies.physics.least_model import TRACE_EXCESS
-from studies.shell.columns import written
+from studies.shell.digits import written
 from studies.shell.options import MOST_CELLS, Within
 from studies.shell.scene import Scene, model_of, nordmark_at
 from studies.shell.study import Run, study

@@ -46,7 +46,7 @@ from studies.experiment.chart.model import (
     side_by_side,
 )
 from studies.physics.descriptions import TITLES, strobed_at
-from studies.shell.columns import written
+from studies.shell.digits import written
 from studies.shell.options import HERTZ, MOST_CELLS, Within
 from studies.shell.scene import (
     Scene,

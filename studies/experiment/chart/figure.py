@@ -34,7 +34,7 @@ from studies.experiment.chart.settled import (
 )
 from studies.physics.descriptions import TITLES
 from studies.shell import plotting
-from studies.shell.columns import written
+from studies.shell.digits import written
 
 SEVEN = plotting.PALETTE[1:8]
 PERIODS = ["white", *SEVEN, *(plotting.tint(one, 0.45) for one in SEVEN), "#A0785A"]

@@ -43,7 +43,7 @@ from studies.experiment.claims.model import (
 )
 from studies.physics.descriptions import falls
 from studies.physics.least_model import at_letters_drives
-from studies.shell.columns import written
+from studies.shell.digits import written
 from studies.shell.scene import Scene, band_of, corresponding, harmonic, nordmark_at
 from studies.shell.study import Run, study
 

@@ -42,7 +42,7 @@ from studies.experiment.effective_impact.model import (
     series_of,
 )
 from studies.physics.calibration import Targets
-from studies.shell.columns import written
+from studies.shell.digits import written
 from studies.shell.run import Verdict
 from studies.shell.scene import Scene, SceneError, harmonic
 from studies.shell.study import Run, study

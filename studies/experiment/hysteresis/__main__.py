@@ -13,7 +13,8 @@ so that the beam's hysteresis over the map's is a product of causes:
     F_beam/F_map = truncation of the map * size of the kick * its change with velocity * delay
                    * higher modes in the flight * ringing met by the next collision
 
-Statistics are of folds deeper than the letter's amplitude stability, 2.5e-4. The bands are those of the map.
+Medians are taken over the folds that lie more than the letter's amplitude stability, 2.5e-4, below grazing.
+The bands belong to the map.
 
 Run:     python -m studies hysteresis [--step HZ] [--inside N]
 Writes:  hysteresis.csv (a row a frequency and period), causes.csv (factors at the letter's frequencies and
@@ -46,7 +47,7 @@ from studies.experiment.hysteresis.model import (
 )
 from studies.physics.descriptions import falls, or_none
 from studies.physics.least_model import at_letters_drives
-from studies.shell.columns import written
+from studies.shell.digits import written
 from studies.shell.options import Within
 from studies.shell.run import Verdict
 from studies.shell.scene import (

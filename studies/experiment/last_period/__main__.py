@@ -32,7 +32,7 @@ from studies.experiment.last_period.clouds import Clouds, clouds_of, frequency_o
 from studies.letter import AMPLITUDE_STABILITY, PERIODS
 from studies.physics.descriptions import strobed_at
 from studies.physics.drive_noise import DRIFTS, SMALL, TIMES, DriveNoise
-from studies.shell.columns import written
+from studies.shell.digits import written
 from studies.shell.scene import Scene, SceneError, harmonic, model_of, single_mode_at
 from studies.shell.study import Run, study
 

@@ -131,7 +131,7 @@ def causes_of(scene: Scene, modes: ModalModel) -> list[Cause]:
 
 @dataclass(frozen=True, kw_only=True)
 class Effect:
-    """The periods that are born with a cause; excesses are those of a grid."""
+    """The periods that begin with a cause, looked for at the excesses of a grid."""
 
     cause: str
     effective_period_s: Annotated[float | None, "free period of small deviations at the gap [s]"]

@@ -16,7 +16,7 @@ from contact.orbits import born_period, fold_excess
 from studies.letter import BREAKDOWN, FREE_PERIOD_ERROR_S
 from studies.physics.calibration import calibrate_damping, calibrate_thickness, free_period
 from studies.physics.descriptions import or_none, strobed_at
-from studies.shell.columns import minus
+from studies.shell.digits import minus
 from studies.shell.scene import Scene, model_of
 
 DESCRIPTIONS = {"map": "map", "single_mode": "Eq. (1)", "beam": "beam"}

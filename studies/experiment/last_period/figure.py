@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from studies.experiment.last_period.changes import Transition
 from studies.physics.descriptions import word
 from studies.shell import plotting
-from studies.shell.columns import written
+from studies.shell.digits import written
 from studies.shell.plotting import BLUE, NOTE, PAGE, VERMILION
 
 TORNADO = (

@@ -33,7 +33,7 @@ import numpy as np
 from studies import letter
 from studies.experiment.soft_wall.closed_forms import SoftWall
 from studies.experiment.soft_wall.model import Beam, Doubling, Kick, beam_of, doubling_of, kicks_of
-from studies.shell.columns import written
+from studies.shell.digits import written
 from studies.shell.options import Within
 from studies.shell.scene import Scene, SceneError, harmonic, single_mode_at
 from studies.shell.study import Run, study

@@ -34,7 +34,7 @@ from studies import letter
 from studies.experiment.time_trace import film as filming
 from studies.experiment.time_trace.model import WORDS, Peak, close_up, lines_of, peaks_of, trace_of
 from studies.physics.descriptions import word
-from studies.shell.columns import written
+from studies.shell.digits import written
 from studies.shell.film import MOST_FRAMES
 from studies.shell.options import HERTZ, Within
 from studies.shell.run import Verdict

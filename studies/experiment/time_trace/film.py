@@ -33,7 +33,7 @@ from beam import Modes, SpringMesh, write_frames
 from contact import ImpactKind, ImpactOscillator, State, simulate
 from contact.orbits import Settled
 from studies.experiment.time_trace.model import Trace, touching
-from studies.shell.columns import minus
+from studies.shell.digits import minus
 from studies.shell.film import RATE, Below, write_film
 from studies.shell.painter import DRIVE, TOUCHED, WIDTH, Moment, Picture, Scenery, stage_of
 from studies.shell.scene import Scene, modes_of

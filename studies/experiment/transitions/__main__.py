@@ -27,7 +27,7 @@ from studies.experiment.transitions.model import AtFrequency, Scans, Transition,
 from studies.letter import FREE_PERIOD_S
 from studies.physics.descriptions import TITLES, StrobePoint, strobe_points_of, word, words
 from studies.physics.two_parameters import Extracted
-from studies.shell.columns import written
+from studies.shell.digits import written
 from studies.shell.run import Verdict
 from studies.shell.scene import Scene, harmonic, model_of
 from studies.shell.study import Run, study

@@ -14,7 +14,7 @@ from studies.measurement.identify.displacement import UNITS
 from studies.measurement.identify.profiles import Profile, rows_of
 from studies.measurement.identify.result import Fit
 from studies.physics.parameters import parameters_of
-from studies.shell.columns import minus, prefixed, written
+from studies.shell.digits import minus, prefixed, written
 from studies.shell.run import Run
 
 TRADE, NOTABLE, MOST, UNLIKE = 0.95, 0.5, 10, 2.0

@@ -13,7 +13,7 @@ from studies.measurement.identify.profiles import Profile
 from studies.measurement.identify.result import Fit
 from studies.physics.parameters import parameters_of
 from studies.shell import plotting
-from studies.shell.columns import minus
+from studies.shell.digits import minus
 
 CAPTION = (
     "Each record with its fit (left), residuals (middle), and the profile likelihood of the two parameters "

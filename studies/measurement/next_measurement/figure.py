@@ -28,7 +28,7 @@ from studies.measurement.next_measurement.model import (
     measurements_at,
 )
 from studies.shell import plotting
-from studies.shell.columns import written
+from studies.shell.digits import written
 from studies.shell.run import Run
 
 BEST = ("frequency_hz", "excess", "period", "errors", "together")

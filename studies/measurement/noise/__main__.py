@@ -33,7 +33,7 @@ from studies.measurement.noise.model import End, Observed, ends_of, observed_of
 from studies.measurement.noise.places import Place
 from studies.measurement.noise.scans import FEWEST, Protocol, cell
 from studies.physics.drive_noise import DRIFTS, SMALL, TIMES
-from studies.shell.columns import written
+from studies.shell.digits import written
 from studies.shell.files import fingerprint
 from studies.shell.options import MOST_CELLS, Within
 from studies.shell.scene import Scene, band_of, corresponding, harmonic, single_mode_at

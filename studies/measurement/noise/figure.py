@@ -11,7 +11,7 @@ from matplotlib.ticker import NullLocator
 from studies import letter
 from studies.measurement.noise.model import Observed
 from studies.shell import plotting
-from studies.shell.columns import written
+from studies.shell.digits import written
 from studies.shell.plotting import BLACK, BLUE, GUIDE, LETTER, PAGE, VERMILION, tint
 from studies.shell.scene import Scene, corresponding
 

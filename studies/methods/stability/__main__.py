@@ -24,7 +24,7 @@ from typing import Annotated
 
 from beam import InvalidValue
 from studies.methods.stability import FAMILIES, Limit, family, findings
-from studies.shell.columns import written
+from studies.shell.digits import written
 from studies.shell.run import MOST_FINDINGS
 from studies.shell.scene import Scene
 from studies.shell.study import Run, study

@@ -35,7 +35,7 @@ from studies.methods.crossings import Swing
 from studies.methods.peers import OutsideSolver
 from studies.methods.stability import Findings, Limit, threshold
 from studies.shell import plotting
-from studies.shell.columns import written
+from studies.shell.digits import written
 from studies.shell.scene import Scene, model_of
 
 OVERSHOOTS = 10.0 ** -np.arange(1, 13)

@@ -27,7 +27,7 @@ from studies.methods.validation.one_mode import aberdeen, coco, ghosh_simpson, s
 from studies.methods.validation.printed import Printed
 from studies.methods.validation.two_beams import two_beams
 from studies.shell import plotting
-from studies.shell.columns import written
+from studies.shell.digits import written
 from studies.shell.scene import Scene
 from studies.shell.study import Run, study
 

@@ -16,7 +16,7 @@ from scipy.special import lambertw
 from beam import ModalModel
 from contact import ImpactOscillator, LinearContact, State, Stop, simulate
 from studies.methods.validation.printed import Printed, compared
-from studies.shell.columns import written
+from studies.shell.digits import written
 
 Array = NDArray[np.float64]
 PRINTED = {0.2: -0.1, 0.4: -0.2, 0.6: -0.1, 0.8: 0.0, 1.0: 0.2}

@@ -19,7 +19,7 @@ import contact
 from beam import ModalModel
 from contact import ImpactOscillator, LinearContact, NewtonRestitution, Stop, orbits
 from studies.methods.validation.printed import Printed, compared
-from studies.shell.columns import minus
+from studies.shell.digits import minus
 
 PUBLISHED = {
     0.788138: (0.3506941722911653, 0.9999974, 0.4280592),

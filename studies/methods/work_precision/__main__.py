@@ -42,7 +42,7 @@ from studies.methods.work_precision.measures import (
 )
 from studies.methods.work_precision.methods import EXACT, SAMPLED, sweeps_for
 from studies.methods.work_precision.problems import EQ_1, HERTZ, MODES, problems_of
-from studies.shell.columns import written
+from studies.shell.digits import written
 from studies.shell.scene import Scene, harmonic, single_mode_at
 from studies.shell.study import Run, study
 

@@ -8,7 +8,7 @@ from itertools import pairwise
 
 from markupsafe import Markup, escape
 
-from studies.shell.columns import prefixed, written
+from studies.shell.digits import prefixed, written
 from studies.shell.programs import ALL
 
 NUMBER = r"\d[\d,]*(?:\.\d+)?(?:e[-+]?\d+)?"

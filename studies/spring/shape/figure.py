@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from matplotlib.figure import Figure
 
 from studies.shell import plotting
-from studies.shell.columns import written
+from studies.shell.digits import written
 from studies.shell.scene import Scene
 from studies.spring.shape.finite_amplitude import Survival
 from studies.spring.shape.shapes import TITLES
