@@ -55,8 +55,7 @@ OWN_FILES = {
     "summary": "What was found.",
     "columns": "What each file and each column holds.",
     "manifest": "The command, the scene, versions and commit of these results.",
-}
-"""What every study leaves."""
+}  # what every study leaves
 
 MOST_FINDINGS = 3
 T = TypeVar("T")

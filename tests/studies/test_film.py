@@ -100,6 +100,11 @@ def test_what_is_near_hides_what_is_far():
     places, shades = view.painted(faces, np.ones((len(faces), 3)))
     assert len(places) == 3 * 64 and np.abs(places).max() < 1.0 and len(np.unique(shades.round(9))) == 3
     np.testing.assert_allclose(view.axes @ view.axes.T, np.eye(3), atol=1e-15)
+    assert np.linalg.det(view.axes) == pytest.approx(1.0) and view(painter.DRIVE)[1] > 0.0  # up is up
+    back = np.array([[(-0.1, -0.1, 0.0), (0.1, -0.1, 0.0), (0.1, 0.1, 0.0), (-0.1, 0.1, 0.0)]])
+    near, far = np.eye(3)[0], np.eye(3)[1]
+    _, shades = view.painted(np.concatenate([back + view.axes[2], back]), np.array([near, far]))
+    assert shades[0] @ far > 0.0 and shades[1] @ near > 0.0  # the near one is painted last
 
 
 def test_gif_and_mp4_hold_every_frame(tmp_path):

@@ -25,6 +25,7 @@ from beam import InvalidValue
 from contact import NotPeriodic
 from studies import ROOT
 from studies.shell.columns import UNITS, columns_of
+from studies.shell.digits import written
 from studies.shell.files import write_atomically
 from studies.shell.programs import names
 from studies.shell.scene import Scene, of_the_letter, read_scene
@@ -268,6 +269,25 @@ def test_each_table_says_what_its_columns_hold_even_without_rows(tmp_path, lette
     assert calls > 40
     with pytest.raises(TypeError, match="rows of one dataclass"):
         run.table("others", [calls], "Others.", of=Cell)
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (-6.2729e-4, "−6.273 × 10⁻⁴"),
+        (99999.6, "1 × 10⁵"),
+        (-0.0119, "−0.0119"),
+        (-0.0, "0"),
+        (40, "40"),
+        (9.9996, "10"),
+        (1.05e11, "1.05 × 10¹¹"),
+        (math.inf, "∞"),
+    ],
+)
+def test_a_number_is_written_in_four_digits_and_reads_back(value, text):
+    assert written(value) == text
+    back = text.replace("−", "-").replace("∞", "inf").translate(str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789"))
+    assert float(back.replace(" × 10", "e")) == pytest.approx(value, rel=5e-4)
 
 
 def test_files_are_complete_or_absent(tmp_path, monkeypatch):

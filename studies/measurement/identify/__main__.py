@@ -74,7 +74,7 @@ from studies.physics.parameters import (
     require_names,
 )
 from studies.shell.options import POSITIONAL, Within
-from studies.shell.scene import Scene, corresponding, harmonic, periods_of
+from studies.shell.scene import Scene, corresponding, harmonic, of_the_letter, periods_of
 from studies.shell.study import Run, study
 
 STEADY = ("free_period", "decay_rate", "gap", "amplitude")
@@ -243,4 +243,4 @@ def where_to_measure(
     plan, thin = Plan(names=tuple(wanted), noise=noise, before=before), THIN[run.quick]
     frequencies = [corresponding(scene, f) for f in FREQUENCIES_HZ[::thin]]
     of = partial(described, scene, "two_parameters", delay)
-    return tabulated(run, of, plan, frequencies, EXCESSES[::thin])
+    return tabulated(run, of, plan, frequencies, EXCESSES[::thin], letters=of_the_letter(scene))

@@ -47,9 +47,9 @@ ERRORS = {
 
 
 def tabulated(
-    run: Run, of: Of, plan: Plan, frequencies: Sequence[float], excesses: Sequence[float]
+    run: Run, of: Of, plan: Plan, frequencies: Sequence[float], excesses: Sequence[float], *, letters: bool
 ) -> list[Measurement]:
-    """Tables, figure and answer over the plane; returns the best places."""
+    """Tables, figure and findings over the plane, with the letter's orbits if `letters`; the best places."""
     columns = run.map(partial(measurements_at, of, plan, excesses), frequencies, "frequencies")
     found = [one for column in columns for one in column]
     chosen = best(found)
@@ -57,11 +57,11 @@ def tabulated(
     run.table("measurements", found, caption, of=Measurement, show=())
     run.table("next", chosen, f"The five best places. {caption}", of=Measurement, show=BEST)
     if found:
-        run.figure("next", draw_plane(found, plan, run.letters), PLANE)
-    letters = letter_rows(of, plan) if run.letters else []
-    if letters:
-        run.table("letter_orbits", letters, "The same by the letter's orbits.", of=LetterOrbits)
-    for sentence in findings(found, letters if plan.names == Plan().names else []):
+        run.figure("next", draw_plane(found, plan, letters), PLANE)
+    own = letter_rows(of, plan) if letters else []
+    if own:
+        run.table("letter_orbits", own, "The same by the letter's orbits.", of=LetterOrbits)
+    for sentence in findings(found, own if plan.names == Plan().names else []):
         run.finding(sentence)
     return chosen
 
