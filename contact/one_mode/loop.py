@@ -36,6 +36,7 @@ import math
 
 from contact.engine.event_loop import DONE, advance
 from contact.engine.recorder import strobes_only
+from contact.flight.modal_flow import FAINT
 from contact.flight.motion import COSINE, SINE, with_drive
 from contact.machine.compiled import borrowed, inlined, kernel
 from contact.one_mode.one_impact import crossing_guess, is_proved, one_impact, peak_derivatives, rising_zero
@@ -113,7 +114,7 @@ def one_mode_periods(table, system, factors, u, v, runs, points, counts):
         p, q = through(n.peak_flow, un, vn)
         compared = outside and rho < s.largest_deviation
         if compared and is_free(n, s, s.overshoot + p + height, q, height):
-            un, vn = through(n.period_flow, un, vn)
+            un, vn = through(n.period_flow, un, vn) if rho > FAINT else (0.0, 0.0)
         else:
             impacts = -1
             if compared:

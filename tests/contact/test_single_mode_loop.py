@@ -7,19 +7,32 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from one_mode import DAMPINGS, FREQUENCIES, GAP, Period, at_a_strobe, compared, oscillator
-from oscillators import slow
+from oscillators import GAMMA, OMEGA, PHI, modes_on_stop, slow
 from tip_judge import Signal, highest
 
 from contact import StroboscopicMap
 from contact.engine.event_loop import DONE
 from contact.flight.crossing import FREE, first_crossing
 from contact.flight.modal_flow import tip_rounding, tip_state
+from contact.maps.strobed_motion import strobed_motion, strobed_system
 
 
 @pytest.mark.parametrize("tau", [0.1, *slow(0.0, 0.05, 0.5, 1.0)])
 @pytest.mark.parametrize("frequency", FREQUENCIES)
 def test_every_period_is_that_of_the_general_loop(frequency, tau):
     assert compared(oscillator(frequency, tau=tau), 400)[0] > 20
+
+
+@pytest.mark.parametrize("n_modes", [1, 6])
+def test_a_deviation_that_has_faded_is_zero_and_no_denormal_number(n_modes):
+    """Rounding would keep it at the smallest number above zero, and arithmetic slow, for ever."""
+    driven = modes_on_stop(
+        OMEGA[:n_modes], 0.05 * OMEGA[:n_modes], PHI[:n_modes], GAMMA[:n_modes], drive=21.5
+    )
+    system, runs = strobed_system(driven.with_excess(-0.05)), at_a_strobe()
+    u, points, counts = np.full((2, n_modes), 1e-9), np.empty((20_000, 2 * n_modes)), np.empty(20_000, int)
+    status = strobed_motion(system.table, system, np.empty(0), u[0], u[1], runs, points, counts)
+    assert status == DONE and not counts.any() and not u.any()
 
 
 @pytest.mark.parametrize("excess", [-0.1, 1e-4, 0.1, 0.6, 3.0])
