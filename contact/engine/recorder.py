@@ -1,12 +1,9 @@
 """The record of a run: impacts, strobes and samples, for exact and fixed-step methods alike.
 
-Times are kept as the number of a drive period and the time since its strobe, so that a million periods bring
-no loss of phase.  A method with a time step counts from one strobe throughout, and has its strobes among the
-samples (``contact.integrators.fixed_step``).  The record keeps the modal state (u, v) that the method
-carries: deviations from the steady motion, or displacements and velocities themselves.
+Touches are kept as in ``contact.touch.record``, and times alike.  A method with a time step counts from one
+strobe throughout, and has its strobes among the samples (``contact.integrators.fixed_step``).
 """
 
-import math
 from typing import NamedTuple
 
 import numpy as np
@@ -15,33 +12,18 @@ from contact.errors import ContactError
 from contact.flight.modal_flow import steady_motion
 from contact.machine.compiled import inlined, kernel, part
 from contact.oscillator import ImpactOscillator
-from contact.trajectory import IMPACT, STAY, Impacts, Run, State, Trajectory, steady_states
+from contact.touch.record import MARKS, TOUCH, new_touches, put_state
+from contact.trajectory import STAY, Impacts, Run, State, Trajectory, steady_states
 
-MARKS = np.dtype([(name, "i8") for name in ("logged", "sampled", "strobed", "impacts", "touching")])
-"""Rows in use of log, samples and strobes; impacts since the last strobe; whether the tip touches."""
-
-LOG = np.dtype(
-    [
-        ("period", "i8"),
-        ("start", "f8"),
-        ("end_period", "i8"),
-        ("end", "f8"),
-        ("approach", "f8"),
-        ("rebound", "f8"),
-        ("loss", "f8"),
-        ("kind", "i8"),
-    ]
-)
-"""A touch: period and clock of its start and of its end [s], tip velocity at both [m/s], energy lost [J] and
-``contact.trajectory.ImpactKind``."""
+FIRST_TOUCHES = 64  # capacity of a new log, which grows by itself
 
 
 class Recorder(NamedTuple):
-    """The arrays into which a run writes."""
+    """The arrays into which a run writes: those of ``touch.record.Touches``, and more."""
 
-    marks: np.ndarray  # `MARKS`, shape (1,)
-    log: np.ndarray  # `LOG`, shape (capacity,); empty if no impacts are wanted
-    log_state: np.ndarray  # (u, v) just before the touch and just after the release, (capacity, 4 n_modes)
+    marks: np.ndarray
+    log: np.ndarray
+    log_state: np.ndarray
     strobes: np.ndarray  # (u, v) at the strobes, shape (n_strobes, 2 n_modes) or (0, 2 n_modes)
     counts: np.ndarray  # impacts since the strobe before, shape (n_strobes,) or (0,)
     sample_period: np.ndarray  # times wanted: drive period and time since its strobe [s], shape (n,)
@@ -55,7 +37,7 @@ def strobes_only(strobes, counts):
     wide = strobes.shape[1]
     return Recorder(
         np.zeros(1, dtype=MARKS),
-        np.empty(0, dtype=LOG),
+        np.empty(0, dtype=TOUCH),
         np.empty((0, 2 * wide)),
         strobes,
         counts,
@@ -63,57 +45,6 @@ def strobes_only(strobes, counts):
         np.empty(0),
         np.empty((0, wide)),
     )
-
-
-@part
-def put_state(row, at, u, v):
-    """Write (u, v) into a row from column `at` on."""
-    n = u.size
-    for k in range(n):
-        row[at + k] = u[k]
-        row[at + n + k] = v[k]
-
-
-@part
-def is_full(recorder):
-    """Whether the log has no rows left for a touch and the stay that may follow it."""
-    return recorder.log.size > 0 and recorder.marks[0].logged >= recorder.log.size - 1
-
-
-@kernel
-def open_touch(recorder, period, clock, approach, kind, u, v):
-    """Start a row of the log."""
-    marks = recorder.marks[0]
-    marks.touching = 1
-    marks.impacts += 1 if kind == IMPACT else 0
-    i = marks.logged
-    marks.logged += 1
-    if recorder.log.size == 0:
-        return
-    row, n = recorder.log[i], u.size
-    row.period, row.start, row.end_period, row.end = period, clock, period, math.nan
-    row.approach, row.rebound, row.loss, row.kind = approach, math.nan, 0.0, kind
-    put_state(recorder.log_state[i], 0, u, v)
-    recorder.log_state[i, 2 * n :] = math.nan
-
-
-@part
-def add_loss(recorder, energy):
-    """Add energy that the touch under way has taken [J]."""
-    if recorder.log.size > 0:
-        recorder.log[recorder.marks[0].logged - 1].loss += energy
-
-
-@kernel
-def close_touch(recorder, period, clock, rebound, u, v):
-    """Complete the last row of the log."""
-    recorder.marks[0].touching = 0
-    if recorder.log.size == 0:
-        return
-    i = recorder.marks[0].logged - 1
-    row = recorder.log[i]
-    row.end_period, row.end, row.rebound = period, clock, rebound
-    put_state(recorder.log_state[i], 2 * u.size, u, v)
 
 
 @part
@@ -148,11 +79,9 @@ def strobe(marks, strobes, counts, u, v):
 
 def recorder_for(run: Run, n_modes: int) -> Recorder:
     """An empty recorder for the strobes and times of `run`."""
-    strobes, times, capacity = run.last - run.first, run.times.size, 64
+    strobes, times = run.last - run.first, run.times.size
     return Recorder(
-        marks=np.zeros(1, dtype=MARKS),
-        log=np.zeros(capacity, dtype=LOG),
-        log_state=np.empty((capacity, 4 * n_modes)),
+        *new_touches(FIRST_TOUCHES, n_modes),
         strobes=np.empty((strobes, 2 * n_modes)),
         counts=np.zeros(strobes, dtype=np.int64),
         sample_period=np.asarray(run.sample_period, dtype=np.int64),

@@ -4,12 +4,15 @@ import numpy as np
 
 from beam.parameters import InvalidValue
 from contact.engine import event_loop as loop
-from contact.engine.recorder import grown, open_touch, recorder_for, trajectory_of
+from contact.engine.recorder import grown, recorder_for, trajectory_of
 from contact.errors import Chatter, ContactError, ContactTooStiff, UnresolvedCrossing
 from contact.flight.modal_flow import steady_motion, tip_rounding, tip_state
 from contact.flight.motion import Motion
+from contact.flight.sampled_crossing import samples_of
 from contact.oscillator import ImpactOscillator
 from contact.touch import TOUCHES, force
+from contact.touch.passage import STATE
+from contact.touch.record import open_touch
 from contact.trajectory import OUTSIDE, SUSTAINED, WAITING, ImpactKind, Regime, Run, State, Trajectory
 
 HELD_WITHIN = 1e3  # largest distance from the gap of a tip that rests on the wall, in rounding bounds
@@ -29,10 +32,9 @@ def start_of(
     period: int,
     clock: float,
     *,
-    search: int = 0,
     steady: tuple[np.ndarray, np.ndarray] | None = None,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Deviations (u, v) of `state` from the steady motion, and a run (`STATE`) that starts there.
+    """Deviations (u, v) of `state` from the steady motion, and the `STATE` of a run that starts there.
 
     `steady` is the steady displacement and velocity at the start, if known, each of shape (n_modes,).
     ValueError is raised if the state has another number of modes, or lies behind the stop of an impact law,
@@ -43,7 +45,7 @@ def start_of(
         raise InvalidValue(f"displacement of the state has {modes} modes; the model has {motion.size}")
     q, q_rate = steady_motion(motion, clock) if steady is None else steady
     u, v = state.displacement - q, state.velocity - q_rate
-    runs = np.zeros(1, dtype=loop.STATE)
+    runs = np.zeros(1, dtype=STATE)
     regime = int(state.regime)
     height, velocity, _acceleration = tip_state(motion, clock, u, v)
     rounding = tip_rounding(motion, u, v)
@@ -64,7 +66,7 @@ def start_of(
             )
         pushes = Regime.INSIDE not in known or force(motion, height, velocity) > 0.0
         regime = Regime.CONTACT if pushes else Regime.INSIDE
-    runs[0] = (regime, 0, period, 0, search, 0, clock, state.wait, state.rebound, -1.0, -1.0)
+    runs[0] = (regime, 0, period, 0, 0, clock, state.wait, state.rebound, -1.0, -1.0)
     return u, v, runs
 
 
@@ -90,22 +92,23 @@ def failure(status: int, motion: Motion, runs: np.ndarray, u: np.ndarray, v: np.
     return error(time=time, gap=-height, velocity=velocity, detail=detail)
 
 
-def exact_trajectory(oscillator: ImpactOscillator, run: Run, *, search: int = 0) -> Trajectory:
+def exact_trajectory(oscillator: ImpactOscillator, run: Run, *, points: int | None = None) -> Trajectory:
     """The motion of `run`, event by event.
 
-    Crossings of the stop are proved (`search` 0) or detected at `search` instants of each drive period.
+    Crossings of the stop are proved, or detected at so many `points` of each drive period.
     Raises ValueError as `start_of` does, and UnresolvedCrossing, Chatter or ContactTooStiff if the motion
     cannot be followed.
     """
     motion, n = oscillator.motion(), oscillator.n_modes
-    u, v, runs = start_of(motion, run.start, run.first, run.clock, search=search)
+    u, v, runs = start_of(motion, run.start, run.first, run.clock)
+    samples = None if points is None else samples_of(motion, points)
     recorder = recorder_for(run, n)
     if runs[0]["regime"] != OUTSIDE:
         kind = ImpactKind.STAY if runs[0]["regime"] == SUSTAINED else ImpactKind.UNDER_WAY
         open_touch(recorder, run.first, run.clock, np.nan, int(kind), u, v)
         recorder.marks["impacts"] = 0  # it did not begin in this period
     while True:
-        status = loop.advance(motion, u, v, runs, run.last, run.clock_end, recorder)
+        status = loop.advance(motion, u, v, runs, run.last, run.clock_end, recorder, samples)
         if status != loop.LOG_FULL:
             break
         recorder = grown(recorder)

@@ -58,8 +58,8 @@ displacement, of two derivatives and of the bound of the third; the sum of the a
 """
 
 FAINT = 1e-150
-"""A deviation below this is set to zero: its square would be a denormal number, with which arithmetic is slow.
-Otherwise a lightly damped mode would stay at the smallest denormal number for ever."""
+"""A deviation below this is set to zero: its square is a denormal number, with which arithmetic is slow.
+Otherwise rounding would keep a lightly damped mode at the smallest denormal number for ever."""
 
 
 @kernel
@@ -252,6 +252,15 @@ def tip_bound(motion, k, value, quadrature):
 def push_on(motion, k, push):
     """The modal force or impulse -phi_k `push` of a force or impulse of the stop on the tip."""
     return -motion.modes[WEIGHT, k] * push
+
+
+@kernel
+def hold(motion, clock, u, v):
+    """Put the tip on the wall at rest; otherwise rounding would let it drift off over many steps."""
+    height, velocity, _acceleration = tip_state(motion, clock, u, v)
+    for k in range(u.size):
+        u[k] += push_on(motion, k, height) / motion.inverse_mass
+        v[k] += push_on(motion, k, velocity) / motion.inverse_mass
 
 
 @kernel

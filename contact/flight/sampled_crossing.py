@@ -13,15 +13,40 @@ it.  If several crossings lie in one interval, the located one need not be the f
 """
 
 import math
+from typing import NamedTuple
+
+import numpy as np
 
 from contact.flight.crossing import CROSSES, FREE
-from contact.flight.modal_flow import START_U, START_V, apply_flow, propagate_flight, tip_rounding, tip_state
+from contact.flight.modal_flow import (
+    START_U,
+    START_V,
+    apply_flow,
+    flow_over,
+    propagate_flight,
+    tip_rounding,
+    tip_state,
+)
+from contact.flight.motion import Motion
 from contact.flight.tip_search import find_peak, find_root, tip_now
 from contact.machine.compiled import kernel
 
 ALIGNED = 1e-9
 """Largest difference of an interval from the spacing, over the spacing, for which the flow over the spacing
 is used: the samples serve to detect, not to locate."""
+
+
+class Samples(NamedTuple):
+    """Instants at which the motion is looked at, and the way from one to the next."""
+
+    spacing: float  # time between them [s]
+    flows: np.ndarray  # flow over this time, shape (n_modes, 6)
+
+
+def samples_of(motion: Motion, points: int) -> Samples:
+    """Samples at so many `points` of each drive period."""
+    spacing = motion.period / points
+    return Samples(spacing, flow_over(motion, spacing))
 
 
 @kernel
@@ -33,13 +58,12 @@ def root_between(motion, flight, base, low, high, margin):
 
 
 @kernel
-def first_sampled_crossing(motion, flight, base, duration, contact_order, spacing, flows):
-    """First crossing of a free flight that samples detect; see ``contact.flight.crossing.first_crossing``.
+def first_sampled_crossing(motion, flight, base, duration, contact_order, samples):
+    """First crossing of a free flight that `samples` detect; see ``contact.flight.crossing.first_crossing``.
 
-    `flows` is the flow over the `spacing` of the samples [s].  Returns FREE or CROSSES, the time since the
-    start of the flight [s], and the number of positions computed.
+    Returns FREE or CROSSES, the time since the start of the flight [s], and the number of positions computed.
     """
-    n, count = motion.size, 0
+    (spacing, flows), n, count = samples, motion.size, 0
     u, v = flight[START_U, :n], flight[START_V, :n]
     margin = tip_rounding(motion, u, v)
     height, rate, _acceleration = tip_state(motion, base, u, v)

@@ -66,4 +66,4 @@ class SampledFlight(Integrator):
 
     def follow(self, oscillator: ImpactOscillator, run: Run) -> Trajectory:
         """The motion of `run`, exact to rounding if no crossing is missed."""
-        return exact_trajectory(oscillator, run, search=self.points)
+        return exact_trajectory(oscillator, run, points=self.points)

@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from beam.parameters import InvalidValue, brief, is_number, require
-from contact.engine.recorder import Recorder, grown, open_touch, recorder_for, trajectory_of
+from contact.engine.recorder import Recorder, grown, recorder_for, trajectory_of
 from contact.errors import Diverged, StepTooLarge
 from contact.flight.modal_flow import steady_motion
 from contact.flight.motion import Motion
@@ -17,6 +17,7 @@ from contact.integrators.method import Integrator
 from contact.laws import LINEAR
 from contact.oscillator import ImpactOscillator
 from contact.touch import TOUCHES
+from contact.touch.record import open_touch
 from contact.trajectory import CONTACT, OUTSIDE, UNDER_WAY, Run, State, Trajectory
 
 

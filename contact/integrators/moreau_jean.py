@@ -46,7 +46,6 @@ from typing import ClassVar
 import numpy as np
 
 from beam.parameters import require_within
-from contact.engine.recorder import add_loss, close_touch, open_touch
 from contact.flight.modal_flow import push_on
 from contact.flight.motion import DECAY, SQUARE, Motion
 from contact.integrators.fixed_step import FixedStep
@@ -61,6 +60,7 @@ from contact.integrators.grid import (
 )
 from contact.laws import NEWTON
 from contact.machine.compiled import inlined, kernel
+from contact.touch.record import add_loss, close_touch, open_touch
 from contact.trajectory import IMPACT
 
 MARGIN = 1e-12  # slack of the test for stability, relative to its two terms, which cancel on the limit

@@ -77,7 +77,7 @@ def strobed_motion(table, system, factors, u, v, runs, points, counts):
         physical state is continuous at the strobe where the amplitude changes, so that (u, v) jumps.
     u, v : ndarray, shape (n_modes,)
         Deviation from the steady motion of the system, before and after; overwritten.
-    runs : record array of ``contact.engine.event_loop.STATE``, shape (1,)
+    runs : record array of ``contact.touch.passage.STATE``, shape (1,)
         State of the run; overwritten.
     points, counts : ndarray, shapes (periods, 2 n_modes) and (periods,)
         Filled with the points and with the impacts of each period.
@@ -102,10 +102,10 @@ def any_periods(system, factors, u, v, runs, points, counts):
             while end < counts.size and factors[end] == factors[at]:
                 end += 1
             add_steady(system.motion, factor - factors[at], u, v)
-            factor, run.root, run.speed = factors[at], -1.0, -1.0
+            factor, run.memory0, run.memory1 = factors[at], -1.0, -1.0
             local = at_amplitude(system, factor)
         recorder = strobes_only(points[at:end], counts[at:end])
-        status = advance(local.motion, u, v, runs, run.period + end - at, 0.0, recorder)
+        status = advance(local.motion, u, v, runs, run.period + end - at, 0.0, recorder, None)
         for i in range(at, end):
             for k in range(points.shape[1]):
                 points[i, k] = (points[i, k] + local.mean[k]) * system.weight[k]

@@ -124,7 +124,7 @@ def one_mode_periods(table, system, factors, u, v, runs, points, counts):
                 u[0], v[0], run.period = un / weight, vn / weight, first + i
                 motion = system.motion if factor == 1.0 else with_drive(system.motion, factor)
                 here = strobes_only(points[i : i + 1], counts[i : i + 1])
-                status = advance(motion, u, v, runs, first + i + 1, 0.0, here)
+                status = advance(motion, u, v, runs, first + i + 1, 0.0, here, None)
                 if status != DONE:
                     return status, left
                 impacts, ui, vi = counts[i], weight * u[0], weight * v[0]

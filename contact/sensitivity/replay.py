@@ -19,8 +19,8 @@ from contact.machine.compiled import kernel
 from contact.oscillator import ImpactOscillator
 from contact.sensitivity.change import Sensitivities
 from contact.sensitivity.touch_flow import FLOWN, TOUCHING, flow_error, flow_from_touch
-from contact.touch import force, waits
-from contact.touch.delayed import waiting_acceleration, waiting_tangents
+from contact.touch import TOUCHES
+from contact.touch.record import new_touches
 from contact.trajectory import ImpactKind, State, Trajectory
 
 
@@ -91,11 +91,9 @@ class Replay:
             self._fly(at)
             self.impact_time[i] = -all_tip_changes(self.vary, self.tangent, u, v, phase)[0] / self.approach[i]
             until = min(time, self._next_touch(i + 1))
-            tangent, record = self.tangent.copy(), np.empty((1, 4 + 2 * n))
+            tangent, record = self.tangent.copy(), new_touches(1, n)
             outcome = flow_from_touch(self.vary, phase, u, v, until - at, tangent, record)
             if outcome == TOUCHING and self.end[i] > time:
-                if waits(self.vary.motion):
-                    waiting_tangents(self.vary, tangent, (phase, u, v), time - at)
                 return tangent
             if outcome != FLOWN:
                 words = "a touch of the motion was lost on its way with derivatives"
@@ -145,8 +143,6 @@ def deviation_rates_at_strobe(oscillator: ImpactOscillator, q: Array, touching: 
     motion, n = oscillator.motion(), oscillator.n_modes
     steady, steady_rate = steady_motion(motion, 0.0)
     rates = deviation_rates(motion, q[..., :n] - steady, q[..., n:] - steady_rate)
-    if touching and waits(motion):
-        rates[n:] = waiting_acceleration(motion, steady)
-    elif touching and (depth := oscillator.tip(q[:n]) - motion.gap) > 0.0:
-        rates[n:] -= motion.phi * force(motion, depth, oscillator.tip(q[n:]))
+    if touching:
+        rates[n:] = TOUCHES[motion.law].acceleration(motion, rates[n:], q[:n], q[n:])
     return rates

@@ -8,19 +8,21 @@ where the strobe map has its square root.  Amplitude and phase of the drive are 
 series, and through instantaneous impacts by saltation matrices.
 """
 
-import math
+from collections.abc import Callable
+from types import ModuleType
 
 import numpy as np
 
 from beam.parameters import Array
 from contact import touch
-from contact.engine.event_loop import STATE
 from contact.errors import ContactError, ContactTooStiff, NotPeriodic
 from contact.flight.crossing import CROSSES, first_crossing
-from contact.flight.modal_flow import propagate, tip_state
+from contact.flight.modal_flow import propagate
 from contact.flight.variation import Variation, force_jump, tangent_flight, variation
 from contact.machine.compiled import borrowed, held, kernel, part
 from contact.oscillator import ImpactOscillator
+from contact.touch.passage import AT_END, RELEASED, STATE, begin, follower
+from contact.touch.record import Touches, new_touches
 from contact.touch.series import new_series
 from contact.touch.tangent_series import new_tangent_workspace, tangent_step
 from contact.trajectory import CONTACT, OUTSIDE, SUSTAINED
@@ -34,45 +36,49 @@ MOST_STEPS = 800
 contact of the letter's beam."""
 
 
-@part
-def through_touch(vary, run, u, v, end, tangent, record):
-    """Follow a touch to its release, at most to the drive time `end` [s]; never FEWER_TOUCHES.
+def with_tangents(file: ModuleType) -> Callable[..., None]:
+    """The `Watch` of this flow: the tangents are carried through each step of a contact by its series."""
+    slopes = file.slopes
 
-    Approach and rebound velocity are written to `record`.
-    """
+    def watch(motion, run, u, v, s, until, series, watcher):
+        vary, tangent, space = watcher
+        if tangent.shape[1] > 0:
+            terms = slopes(motion, run, series, space.weights)
+            if terms > 0:
+                tangent_step(vary, space, terms, s, tangent, (run.clock, u, v))
+
+    return part(watch)
+
+
+follow = follower(with_tangents)
+
+
+@part
+def through_touch(vary, run, u, v, end, tangent, touches):
+    """Follow a touch to its release, at most to the drive time `end` [s]; never FEWER_TOUCHES."""
     motion, with_tangent = vary.motion, tangent.shape[1] > 0
     order, columns = touch.series_size(motion)
     series = new_series(order, columns)
     space = new_tangent_workspace(order if with_tangent else 0, tangent.shape[0], tangent.shape[1])
-    approach = tip_state(motion, run.clock, u, v)[1]
-    record[2] = approach
+    before = (run.clock, u.copy(), v.copy())
+    approach, rebound = begin(motion, run, u, v, touches)
     if not approach > 0.0:
         return FAILED
-    before = (run.clock, u.copy(), v.copy())
-    run.regime, rebound, _loss = touch.strike(motion, run, u, v, approach)
     if run.regime == SUSTAINED:  # accumulating impacts are followed one by one
         run.regime, run.contact_order = OUTSIDE, 1 if rebound < 0.0 else 2
     if with_tangent and run.regime == CONTACT:
         force_jump(vary, touch.force(motion, 0.0, approach), approach, tangent, before)
-    steps = 0
-    while run.regime != OUTSIDE:
-        if not run.clock < end:
+    run.steps = 0
+    if run.regime != OUTSIDE:
+        left = follow(motion, u, v, run, end, MOST_STEPS, touches, series, (vary, tangent, space))
+        if left == AT_END:
+            if with_tangent:
+                touch.inside(motion, vary, (run.clock, u, v), run.clock - before[0], tangent)
             return TOUCHING
-        steps += 1
-        s, h, following = touch.step(motion, run, u, v, end - run.clock, series)
-        if steps > MOST_STEPS or not (0.0 <= h < math.inf):
+        if left != RELEASED:
             return TOO_STIFF
-        if with_tangent:
-            terms = touch.slopes(motion, run, series, space.weights)
-            if terms > 0:
-                tangent_step(vary, space, terms, s, tangent, (run.clock, u, v))
-        touch.state(motion, run, s, series, u, v)
-        run.regime, run.clock = following, run.clock + h
-        if following == OUTSIDE:
-            touch.leave(motion, run, u, v)
     if with_tangent:
         touch.saltation(motion, vary, before, (run.clock, u, v), tangent)
-    record[3] = tip_state(motion, run.clock, u, v)[1] if math.isnan(rebound) else rebound
     return FLOWN
 
 
@@ -85,7 +91,7 @@ def fly(vary, u, v, tangent, clock, time):
 
 
 @kernel
-def flow_from_touch(vary, base, u, v, duration, tangent, record):
+def flow_from_touch(vary, base, u, v, duration, tangent, touches):
     """Flow for `duration` from a touch at time `base` after a strobe.
 
     Parameters
@@ -100,20 +106,18 @@ def flow_from_touch(vary, base, u, v, duration, tangent, record):
         Tangents of (u, v, S, C), overwritten by their values at the end; the last columns belong to the
         parameters of `vary`.  The unit matrix turns into the derivatives with respect to the start.  Without
         columns no tangents are computed.
-    record : ndarray, shape (touches, 4 + 2 n_modes)
-        One row for each contact to go through; in the last flight the wall is ignored.  Results: start and
-        end of each contact since the first touch [s], approach and rebound velocity [m/s], deviations (u, v)
-        at its end.  The rebound velocity is zero only after an impact that gives none.
+    touches : Touches
+        With a row for each contact to go through; in the last flight the wall is ignored.  Filled with these
+        contacts, at drive times.  The rebound velocity is zero only after an impact that gives none.
 
     Returns the outcome: FLOWN, FEWER_TOUCHES, FAILED, TOUCHING or TOO_STIFF.
     """
     runs = np.zeros(1, dtype=STATE)
     run, end, outcome = runs[0], base + duration, FLOWN
-    vary, tangent, record = borrowed(vary), borrowed(tangent), borrowed(record)
+    vary, tangent, touches = borrowed(vary), borrowed(tangent), borrowed(touches)
     u, v = borrowed(u), borrowed(v)
-    n = vary.motion.size
     run.clock = base
-    for i in range(record.shape[0]):
+    for i in range(touches.log.size):
         if i > 0:
             crossing, s = first_crossing(vary.motion, run.clock, u, v, end - run.clock, run.contact_order)
             if crossing != CROSSES:
@@ -121,17 +125,11 @@ def flow_from_touch(vary, base, u, v, duration, tangent, record):
                 break
             fly(vary, u, v, tangent, run.clock, s)
             run.clock += s
-        row = record[i]
-        row[0] = run.clock - base
-        outcome = through_touch(vary, run, u, v, end, tangent, row)
+        outcome = through_touch(vary, run, u, v, end, tangent, touches)
         if outcome == FLOWN and run.clock > end:
             outcome = FAILED
         if outcome != FLOWN:
             break
-        row[1] = run.clock - base
-        for k in range(n):
-            row[4 + k] = u[k]
-            row[4 + n + k] = v[k]
     if outcome == FLOWN:
         fly(vary, u, v, tangent, run.clock, end - run.clock)
     held(runs)  # a record does not keep the array it lies in
@@ -153,20 +151,20 @@ def flow_over_periods(
     deviations: Array,
     touches: int,
     vary: Variation | None = None,
-) -> tuple[Array, Array, Array]:
+) -> tuple[Array, Array, Touches]:
     """The flow over m = `period` drive periods from a touch at drive time `phase` [s].
 
     It starts from the `deviations` (u, v), shape (2 n_modes,).  Returned are (u, v) at the end, the tangents
-    with respect to (u, v, S, C) and the parameters of `vary`, and the record of `flow_from_touch`.
+    with respect to (u, v, S, C) and the parameters of `vary`, and the touches, at times since the first one.
 
     NotPeriodic is raised if the motion has fewer touches or a contact does not end, and ContactTooStiff if a
     contact needs more than `MOST_STEPS`.
     """
     (u, v), size, duration = deviations.reshape(2, -1).copy(), deviations.size, period * oscillator.period
     vary = variation(oscillator.motion(), oscillator.tip_response()) if vary is None else vary
-    tangent, record = np.eye(size + 2, size + 2 + len(vary.scalars)), np.empty((touches, 4 + size))
+    tangent, record = np.eye(size + 2, size + 2 + len(vary.scalars)), new_touches(touches, u.size)
     outcome = flow_from_touch(vary, phase, u, v, duration, tangent, record)
     if outcome != FLOWN:
         words = f"an orbit of period {period} with {touches} touches was lost"
-        raise flow_error(outcome, phase, float(record[0, 2]), words)
-    return np.concatenate([u, v]), tangent, record
+        raise flow_error(outcome, phase, float(record.log[0]["approach"]), words)
+    return np.concatenate([u, v]), tangent, record.since(phase)

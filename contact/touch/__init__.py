@@ -12,8 +12,8 @@ How to add a law, say N = k d^3
     4. A test: the contact of a free mass conserves energy, and agrees with an outside solver.
 To read for this: `ContactLaw`, ``linear``, ``time_series``, and `Series` in ``contact.touch.series``.
 
-What a file offers.  `motion` is the oscillator, `run` the state of the run
-(``contact.engine.event_loop.STATE``), (u, v) are the deviations, and `series` is the workspace of one step.
+What a file offers.  `motion` is the oscillator, `run` the state of the motion
+(``contact.touch.passage.STATE``), (u, v) are the deviations, and `series` is the workspace of one step.
     LAW, METHOD                               the law in words; the name of its exact method
     REGIMES                                   where the tip can be: ``contact.trajectory.Regime``
     series_size(motion) -> order, columns     size of the workspace of one step
@@ -28,7 +28,8 @@ What a file offers.  `motion` is the oscillator, `run` the state of the run
     series_variable(motion, t, s, series)     the variable of the series a time t [s] into a step up to s
     state(motion, run, s, series, u, v)       writes the deviations there into (u, v)
     work(motion, run, s, series)              work done on the stop up to there [J]
-    leave(motion, run, u, v)                  sets run.contact_order for the flight after the release
+    leave(motion, run, u, v) -> velocity      sets run.contact_order for the flight after the release; the
+                                              tip velocity there [m/s]
     force(motion, d, d') -> N                 for the methods with a time step, at d >= 0
     stiffness(motion, d, d') -> dN/dd, dN/dd'
     slopes(motion, run, series, weights) -> terms
@@ -38,7 +39,14 @@ What a file offers.  `motion` is the oscillator, `run` the state of the run
     saltation(motion, vary, before, after, tangent)
                                               the immediate effect of a touch on the tangents; `before` and
                                               `after` are (drive time, u, v)
-A law with the regime WAITING has three more functions: see ``contact.touch.delayed``.
+    inside(motion, vary, now, length, tangent)
+                                              the effect on the tangents, beyond the series, of a touch that
+                                              has lasted a time `length` [s]; `now` is (drive time, u, v)
+    acceleration(motion, free, q, rate)       d^2 u/dt^2 in touch at a strobe, shape (n_modes,), from that of
+                                              `free` modes and the modal state (q, q')
+    repeated_touch(motion, speed, period)     in closed form, the touch that repeats after some drive periods,
+                                              as (jump, duration, leaves) of ``single_impact.Kick``, or None
+The last two are plain functions.  ``contact.touch.series`` has what most laws share.
 
 An unknown code is an error wherever a law is needed.  A kernel takes no functions as arguments; `by_law`
 therefore links the files of the table into one compiled function for each name.
@@ -48,23 +56,16 @@ import inspect
 from collections.abc import Callable
 from typing import TypeVar
 
-from contact.flight.motion import Motion
 from contact.laws import DELAYED, HERTZ, LINEAR, NEWTON
 from contact.machine.compiled import part
 from contact.touch import delayed, hertz, linear, newton
-from contact.trajectory import WAITING
 
 Function = TypeVar("Function", bound=Callable[..., object])
 
 TOUCHES = {NEWTON: newton, DELAYED: delayed, LINEAR: linear, HERTZ: hertz}  # the file of each law
 
-COMPILED = "series_size strike step series_variable state work leave force stiffness slopes saltation"
+COMPILED = "series_size strike step series_variable state work leave force stiffness slopes saltation inside"
 """The compiled functions of a law's file."""
-
-
-def waits(motion: Motion) -> bool:
-    """Whether the law holds the tip on the wall for a time of its own, whatever pulls at it."""
-    return WAITING in TOUCHES[motion.law].REGIMES
 
 
 def by_law(functions: dict[int, Function]) -> Function:
@@ -79,6 +80,17 @@ def by_law(functions: dict[int, Function]) -> Function:
     return part(names["chosen"])
 
 
-series_size, strike, step, series_variable, state, work, leave, force, stiffness, slopes, saltation = (
-    by_law({code: getattr(file, name) for code, file in TOUCHES.items()}) for name in COMPILED.split()
-)
+(
+    series_size,
+    strike,
+    step,
+    series_variable,
+    state,
+    work,
+    leave,
+    force,
+    stiffness,
+    slopes,
+    saltation,
+    inside,
+) = (by_law({code: getattr(file, name) for code, file in TOUCHES.items()}) for name in COMPILED.split())

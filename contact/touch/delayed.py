@@ -22,17 +22,13 @@ velocity at the touch, R their turn by the angle w delta and N the free flow ove
 with the deviation (gap, -tau v) - R (p, r) and comes back with (gap, v) - (p, r):
 
     (I - N R) (p, r) = (gap, v) - N (gap, -tau v),      A(v)^2 = p^2 + (r/(2 pi f))^2.
-
-A law with the regime WAITING has these three functions besides those of ``contact.touch``:
-    waiting_tangents(vary, tangent, start, length)   the tangents at a time within the wait
-    waiting_acceleration(motion, steady)             d^2 u/dt^2 during the wait
-    repeated_touch(motion, speed, period)            the touch of the orbit above
 """
 
 import numpy as np
 
 from contact.errors import NotPeriodic
-from contact.flight.modal_flow import free_flow, push_on, tip_state
+from contact.flight.modal_flow import free_flow, hold, push_on, tip_state
+from contact.flight.motion import COSINE
 from contact.flight.variation import NUMBER0, NUMBER1, all_tip_changes, tangent_flight
 from contact.machine.compiled import kernel, part
 from contact.touch import newton
@@ -64,7 +60,7 @@ def numbers_at(table, speed):
     They are interpolated by cubics through values and slopes of the law's table; beyond it they are constant.
     """
     n = table.shape[1]
-    if speed <= table[0, 0]:
+    if not speed > table[0, 0]:
         return table[RESTITUTION, 0], 0.0, table[DELAY, 0], 0.0
     if speed >= table[0, n - 1]:
         return table[RESTITUTION, n - 1], 0.0, table[DELAY, n - 1], 0.0
@@ -97,7 +93,7 @@ def step(motion, run, u, v, limit, series):
 def state(motion, run, h, series, u, v):
     """The deviation a time `h` [s] into the wait."""
     u[0], v[0] = 0.0, 0.0
-    newton.hold(motion, run.clock + h, u, v)
+    hold(motion, run.clock + h, u, v)
 
 
 @part
@@ -105,6 +101,7 @@ def leave(motion, run, u, v):
     """The rebound."""
     newton.newton_impact(motion, v, -run.rebound, 0.0)
     run.contact_order = 1 if run.rebound < 0.0 else 2
+    return run.rebound
 
 
 @kernel
@@ -134,18 +131,20 @@ def saltation(motion, vary, before, after, tangent):
         tangent[0, j], tangent[1, j] = share * (height[j] - own[0][j]), share * (rate[j] - own[1][j])
 
 
-def waiting_tangents(vary, tangent, start, length):
-    """Carry the tangents of a touch at `start`, (drive time, u, v), over a `length` [s] of its wait."""
-    clock, u, v = start
-    tangent_flight(vary, tangent, u, v, clock, length)
+@kernel
+def inside(motion, vary, now, length, tangent):
+    """The tip has waited at the stop for a time `length` [s], and the drive has gone on."""
+    clock, u, v = now
+    share = push_on(motion, 0, 1.0 / motion.inverse_mass)
+    tangent_flight(vary, tangent, u, v, clock - length, length)
     tangent[:2] = 0.0
-    height, rate = all_tip_changes(vary, tangent, u, v, clock + length)
-    tangent[:2] = -np.array([height, rate]) / vary.motion.phi[0]
+    height, rate = all_tip_changes(vary, tangent, u, v, clock)
+    tangent[0], tangent[1] = share * height, share * rate
 
 
-def waiting_acceleration(motion, steady):
-    """d^2 u/dt^2 during the wait, from the `steady` displacement of the mode, which follows the drive."""
-    return motion.drive**2 * steady
+def acceleration(motion, free, q, rate):
+    """During the wait the mode stands still, so that its deviation follows the drive."""
+    return motion.drive**2 * motion.row(COSINE)
 
 
 def repeated_touch(motion, speed, period):

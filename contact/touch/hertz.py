@@ -59,12 +59,16 @@ _EDGE = TOLERANCE ** (1.0 / ORDER)
 INVERSE = 1.0 / np.maximum(1.0, np.arange(64.0))  # 1/n
 
 strike, leave, saltation = shared.strike, shared.leave, shared.saltation
+inside, repeated_touch = shared.inside, shared.repeated_touch
 
 
 @kernel
 def force(numbers, depth, rate):
     """N at penetration `depth` >= 0 and its `rate` [N]."""
     return numbers.number0 * depth * math.sqrt(depth) * (1.0 + numbers.number1 * rate)
+
+
+acceleration = shared.accelerated_by(force)
 
 
 @kernel
@@ -215,13 +219,13 @@ def series_variable(motion, t, end, series):
 def step(motion, run, u, v, limit, series):
     """One step from (u, v), at most `limit` [s]; see ``contact.touch``."""
     r, clock = series.scalars[ROOT], series.scalars[CLOCK]
-    if run.speed < 0.0:
-        run.speed = speed_scale(motion, u, v)
-    if run.root < 0.0:
-        run.root = math.sqrt(max(0.0, tip_state(motion, run.clock, u, v)[0]))
-    r[0] = run.root
+    if run.memory1 < 0.0:
+        run.memory1 = speed_scale(motion, u, v)
+    if run.memory0 < 0.0:
+        run.memory0 = math.sqrt(max(0.0, tip_state(motion, run.clock, u, v)[0]))
+    r[0] = run.memory0
     fill(motion, run.clock, u, v, series)
-    s = longest_step(motion, run.speed, series)
+    s = longest_step(motion, run.memory1, series)
     if not (0.0 < s < math.inf):
         return math.nan, math.nan, CONTACT
     end, following = release_in(r, s), CONTACT
@@ -230,7 +234,7 @@ def step(motion, run, u, v, limit, series):
     length = horner(clock, 1.0, 0.0, s)[0]
     if length > limit:
         s, length, following = series_variable(motion, limit, s, series), limit, CONTACT
-    run.root = horner(r, 1.0, 0.0, s)[0]
+    run.memory0 = horner(r, 1.0, 0.0, s)[0]
     return s, length, following
 
 

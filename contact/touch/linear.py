@@ -24,6 +24,7 @@ LAW, METHOD = "LinearContact", "piecewise-linear"
 REGIMES = (OUTSIDE, CONTACT, INSIDE)
 
 strike, leave, saltation = shared.strike, shared.leave, shared.saltation
+inside, repeated_touch = shared.inside, shared.repeated_touch
 series_size, series_variable = time_series.series_size, time_series.series_variable
 state, work = time_series.state, time_series.work
 
@@ -32,6 +33,9 @@ state, work = time_series.state, time_series.work
 def force(numbers, depth, rate):
     """N at penetration `depth` >= 0 and its `rate` [N]."""
     return max(0.0, numbers.number0 * depth + numbers.number1 * rate)
+
+
+acceleration = shared.accelerated_by(force)
 
 
 @part

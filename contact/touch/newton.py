@@ -26,6 +26,7 @@ import math
 from contact.flight.elementary import EPS
 from contact.flight.modal_flow import (
     acceleration_rounding,
+    hold,
     mode_acceleration,
     push_on,
     tip_rounding,
@@ -36,6 +37,7 @@ from contact.flight.polynomial_root import first_polynomial_root
 from contact.flight.tip_search import jerk_bound
 from contact.flight.variation import NUMBER0, all_tip_changes
 from contact.machine.compiled import kernel, part
+from contact.touch import series as shared
 from contact.touch import time_series
 from contact.touch.time_series import FORCE, begin, extend, free_pull, longest_step
 from contact.trajectory import OUTSIDE, SUSTAINED
@@ -55,12 +57,16 @@ STEADY_PULL = 0.1
 and the hops do end."""
 
 series_size, series_variable = time_series.series_size, time_series.series_variable
+inside, repeated_touch = shared.inside, shared.repeated_touch
 
 
 @part
 def force(numbers, depth, rate):
     """No force: the law acts at once [N]."""
     return 0.0
+
+
+acceleration = shared.accelerated_by(force)
 
 
 @part
@@ -115,15 +121,6 @@ def strike(motion, run, u, v, approach):
 
 
 @kernel
-def hold(motion, clock, u, v):
-    """Put the tip on the wall at rest; otherwise rounding would let it drift off over many steps."""
-    height, velocity, _acceleration = tip_state(motion, clock, u, v)
-    for k in range(u.size):
-        u[k] += push_on(motion, k, height) / motion.inverse_mass
-        v[k] += push_on(motion, k, velocity) / motion.inverse_mass
-
-
-@kernel
 def step(motion, run, u, v, limit, series):
     """One step of the stay on the wall, at most `limit` [s]; see ``contact.touch``."""
     begin(motion, run.clock, u, v, series)
@@ -158,6 +155,7 @@ def work(motion, run, h, series):
 def leave(motion, run, u, v):
     """The end of the rest, where d, d' and d'' vanish."""
     run.contact_order = 3
+    return tip_state(motion, run.clock, u, v)[1]
 
 
 @kernel

@@ -19,6 +19,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from contact.flight.modal_flow import tip_state
 from contact.machine.compiled import inlined, kernel, part
 from contact.machine.vector_loops import aligned, weighted_rows
 from contact.trajectory import CONTACT
@@ -51,7 +52,7 @@ def new_series(order, columns):
 @part
 def strike(motion, run, u, v, approach):
     """A touch under a force law: the contact begins at d = 0; see ``contact.touch``."""
-    run.root, run.speed = 0.0, -1.0
+    run.memory0, run.memory1 = 0.0, -1.0
     return CONTACT, math.nan, 0.0
 
 
@@ -59,11 +60,33 @@ def strike(motion, run, u, v, approach):
 def leave(motion, run, u, v):
     """The release of a force law: the next flight starts on the wall with a velocity."""
     run.contact_order = 1
+    return tip_state(motion, run.clock, u, v)[1]
 
 
 @part
 def saltation(motion, vary, before, after, tangent):
     """No immediate effect: the tangents have gone through the contact with its series."""
+
+
+@part
+def inside(motion, vary, now, length, tangent):
+    """No more effect: the tangents have gone up to this time with the series."""
+
+
+def accelerated_by(force):
+    """`acceleration` under the `force` of a law."""
+
+    def acceleration(motion, free, q, rate):
+        """The acceleration `free` of the modes less that by the push of the stop."""
+        depth = motion.tip(q) - motion.gap
+        return free - motion.phi * force(motion, depth, motion.tip(rate)) if depth > 0.0 else free
+
+    return acceleration
+
+
+def repeated_touch(motion, speed, period):
+    """No closed form."""
+    return None
 
 
 @part

@@ -9,10 +9,14 @@ from cases_of_calls import GAP, HERTZ, NEWTON
 
 import contact
 from contact import Regime, orbits
+from contact.touch.record import Touches
 
 # an orbit of another period, of the same one with more touches, and of an oscillator with another gap
 P4 = told(dataclasses.replace(HERTZ.family, period=4).at_speed(0.1), "has 4 drive periods; it must have 5")
-TWICE = told(dataclasses.replace(HERTZ.orbit, record=np.tile(HERTZ.orbit.record, (2, 1))), "has 2 touches")
+TWICE = told(
+    dataclasses.replace(HERTZ.orbit, record=Touches(*(np.repeat(each, 2, 0) for each in HERTZ.orbit.record))),
+    "has 2 touches",
+)
 WIDER = dataclasses.replace(HERTZ.oscillator, stop=contact.Stop(gap=0.0108, law=HERTZ.oscillator.stop.law))
 FOREIGN = told(HERTZ.family.of(WIDER).at_speed(HERTZ.speed), "oscillator of the start is not")
 

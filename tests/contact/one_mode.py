@@ -7,11 +7,12 @@ from oscillators import modes_on_stop, newton
 
 from contact import ImpactOscillator, State, simulate
 from contact.engine.event_loop import DONE, advance
-from contact.engine.recorder import LOG, strobes_only
+from contact.engine.recorder import strobes_only
 from contact.engine.start import start_of
 from contact.flight.elementary import EPS
 from contact.maps.strobed_motion import strobed_system
 from contact.one_mode.loop import one_mode_periods
+from contact.touch.record import TOUCH
 from contact.trajectory import IMPACT
 
 GAP = 0.01
@@ -43,7 +44,7 @@ class Period:
         self.system = strobed_system(single)
         self.motion, self.table = self.system.motion, self.system.table
         assert self.table is not None
-        self.log, self.log_state = np.empty(110_000, dtype=LOG), np.empty((110_000, 4))
+        self.log, self.log_state = np.empty(110_000, dtype=TOUCH), np.empty((110_000, 4))
 
     def fast(self, u, v, runs):
         """Status, impacts and periods left; the arrays are overwritten."""
@@ -57,7 +58,7 @@ class Period:
         """Status, impacts and approach velocities."""
         counts = np.zeros(1, dtype=np.int64)
         recorder = strobes_only(np.empty((1, 2)), counts)._replace(log=self.log, log_state=self.log_state)
-        status = advance(self.motion, u, v, runs, int(runs[0]["period"]) + 1, 0.0, recorder)
+        status = advance(self.motion, u, v, runs, int(runs[0]["period"]) + 1, 0.0, recorder, None)
         rows = self.log[: recorder.marks[0]["logged"]]
         return status, int(counts[0]), rows["approach"][rows["kind"] == IMPACT]
 

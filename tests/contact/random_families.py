@@ -213,17 +213,17 @@ def wrong_multiplier(kind: str, orbit: PeriodicOrbit) -> str:
 def nearest_graze(orbit: PeriodicOrbit) -> float:
     """The height over the stop, in gaps, of the extremum of the tip nearest to it: 0 for a slow touch, else a
     peak of a flight, the touch at its end ignored, or its lowest point, or the least depth in a contact."""
-    oscillator, n, heights = orbit.oscillator, orbit.oscillator.n_modes, [math.inf]
+    oscillator, heights = orbit.oscillator, [math.inf]
     if orbit.approach.min() < math.sqrt(PLACE) * oscillator.unit_speed:
         return 0.0
     motion, gap, state = oscillator.motion(), oscillator.stop.gap, orbit.state()
-    ends = np.append(orbit.record[1:, 0], orbit.duration)
-    for row, end in zip(orbit.record, ends, strict=True):
-        tip = Signal(motion, float(orbit.phase + row[1]), row[4 : 4 + n], row[4 + n :])
-        length = float(end - row[1])
+    log = orbit.record.log
+    ends = np.append(log["start"][1:], orbit.duration)
+    for low, high, end, after in zip(log["start"], log["end"], ends, orbit.record.states[:, 1], strict=True):
+        tip = Signal(motion, float(orbit.phase + high), *after)
+        length = float(end - high)
         heights += list(tip(tip.peaks(length + 0.1 * oscillator.period)) / gap - 1.0)
         heights.append(float(np.min(tip(tip.samples(length)))) / gap - 1.0)
-        low, high = row[0], row[1]
         for _ in range(3 if high > low and orbit.admissible else 0):
             times = np.linspace(low, high, 202)[1:-1]
             run = contact.simulate(oscillator, state, duration=float(high), times=state.time + times)

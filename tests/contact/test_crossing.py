@@ -159,8 +159,8 @@ def test_all_peaks_of_an_orbit_are_found(hertz):
     omega = 2 * np.pi * np.array([24.5, hertz])
     system = modes_on_stop(omega, [3.0, 20.0], [7.0, 14.0], [0.09, 0.0], law=newton(0.1), drive=21.5)
     orbit = Shooting(oscillator=system, period=3).at_speed(0.3 * system.unit_speed)
-    (_start, left, _approach, _rebound, *state) = orbit.record[0]
-    signal = Signal(orbit.oscillator.motion(), float(orbit.phase + left), *np.reshape(state, (2, 2)))
+    left = float(orbit.record.log["end"][0])
+    signal = Signal(orbit.oscillator.motion(), orbit.phase + left, *orbit.record.states[0, 1])
     tops = signal.peaks(orbit.duration - left)
     found = np.array([(place, height) for _, place, height in peaks(orbit)])
     assert len(found) == tops.size > (40 if hertz > 1000 else 1)

@@ -123,7 +123,7 @@ def why_no_neighbours(a: Point, b: Point) -> str:
     """
     if not a.direction @ b.direction > math.cos(BEND):
         return "the curve bends"
-    before, after = a.orbit.record[:, 0], b.orbit.record[:, 0]
+    before, after = (point.orbit.record.log["start"] for point in (a, b))
     if before.size == after.size and np.max(np.abs(after - before)) > DRIFT * a.orbit.oscillator.period:
         return "a touch is gained or lost between others"
     if a.orbit.repeats() != b.orbit.repeats():
@@ -142,7 +142,7 @@ def grazes(orbit: PeriodicOrbit) -> bool:
 
     A touch splits where the tip leaves the stop with no velocity; only a plastic one leaves it so everywhere.
     """
-    rebound = np.abs(orbit.record[:, 3])
+    rebound = np.abs(orbit.record.log["rebound"])
     splits = np.any((rebound > 0.0) & (rebound < SPLIT * orbit.approach))
     if splits or orbit.approach.min() < SLOW * orbit.oscillator.unit_speed:
         return True

@@ -22,6 +22,7 @@ from contact.orbits.families.kick import KickFamily
 from contact.oscillator import ImpactOscillator
 from contact.sensitivity.touch_flow import flow_over_periods
 from contact.simulation import simulate
+from contact.touch.record import Touches
 from contact.trajectory import ImpactKind, Regime, State
 
 STEEPEST = 1e10
@@ -67,7 +68,7 @@ class ContinuableFamily:
         rows = np.array([[*-phi, *still, 0.0], [*still, *-phi, 1.0]])
         return np.linalg.solve(steady, rows), np.linalg.solve(steady, [self.oscillator.stop.gap, 0.0])
 
-    def flow(self, start: Array) -> tuple[Array, Array, Array]:
+    def flow(self, start: Array) -> tuple[Array, Array, Touches]:
         """End, tangent and record (``flow_over_periods``) of the flow from a touch with (u, v, S, C)."""
         driven, phase = driven_at(self.oscillator, start[-2:])
         return flow_over_periods(driven, self.period, phase, start[:-2], self.impacts)

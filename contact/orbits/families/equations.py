@@ -33,6 +33,7 @@ from contact.oscillator import ImpactOscillator
 from contact.sensitivity.change import Sensitivities
 from contact.sensitivity.replay import deviation_rates
 from contact.sensitivity.touch_flow import flow_over_periods
+from contact.touch.record import Touches
 
 CONVERGED = 1e-12  # largest residual over the sizes; rounding of the flow over m periods is about 1e-14
 
@@ -84,7 +85,7 @@ def shot_of(
     phase: float,
     start: Array,
     period: int,
-    flown: tuple[Array, Array, Array],
+    flown: tuple[Array, Array, Touches],
     grazing: float,
     speed: float | None = None,
 ) -> Shot:
@@ -98,7 +99,7 @@ def shot_of(
         oscillator=oscillator,
         period=period,
         excess=oscillator.driven.amplitude / grazing - 1.0,
-        speed=float(record[0, 2]) if speed is None else speed,
+        speed=float(record.log[0]["approach"]) if speed is None else speed,
         phase=phase,
         displacement=u,
         velocity=v,

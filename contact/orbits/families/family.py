@@ -26,6 +26,7 @@ from contact.flight.modal_flow import steady_motion, tip_state
 from contact.flight.tip_search import peaks_of_flight, tip_at
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
+from contact.touch.record import Touches
 from contact.trajectory import ImpactKind, State
 
 Failure = TypeVar("Failure", bound=ContactError)
@@ -191,8 +192,8 @@ class PeriodicOrbit(TouchOrbit):
 
     Parameters
     ----------
-    record : ndarray, shape (impacts, 4 + 2 n_modes)
-        Its touches, as in ``contact.sensitivity.touch_flow``.
+    record : Touches
+        Its touches (``contact.touch.record``), at times since the first one.
     tangent : ndarray, shape (2 n_modes, 2 n_modes)
         Its monodromy matrix.
     slope, residual : float
@@ -200,7 +201,7 @@ class PeriodicOrbit(TouchOrbit):
         equations, in units of the gap.
     """
 
-    record: Array = field(repr=False)
+    record: Touches = field(repr=False)
     tangent: Array = field(repr=False)
     slope: float
     residual: float
@@ -208,12 +209,12 @@ class PeriodicOrbit(TouchOrbit):
     @property
     def impacts(self) -> int:
         """Touches in one period."""
-        return len(self.record)
+        return len(self.record.log)
 
     @property
     def approach(self) -> Array:
         """Approach velocities of all touches in one period, shape (impacts,) [m/s]."""
-        return self.record[:, 2]
+        return np.asarray(self.record.log["approach"])
 
     @cached_property
     def touches(self) -> int:
@@ -230,7 +231,8 @@ class PeriodicOrbit(TouchOrbit):
 
         Times and speeds of its touches must agree `within` this part of the largest.
         """
-        k, rows, shift = self.impacts, self.record[:, :4], np.zeros(4)
+        rows = np.column_stack([self.record.log[name] for name in ("start", "end", "approach", "rebound")])
+        k, shift = self.impacts, np.zeros(4)
         for times in (times for times in range(k, 1, -1) if k % times == self.period % times == 0):
             shift[:2] = self.duration / times
             off = np.abs(rows[k // times :] - shift - rows[: -(k // times)])
@@ -244,10 +246,10 @@ class PeriodicOrbit(TouchOrbit):
 
     def release(self) -> Release:
         """The end of the last touch; its slack grows with the residual."""
-        n, last = self.oscillator.n_modes, self.record[-1]
-        off = 4.0 * self.residual * self.oscillator.stop.gap / self.record[0, 2]
+        last, (u, v) = self.record.log[-1], self.record.states[-1, 1]
+        off = 4.0 * self.residual * self.oscillator.stop.gap / self.approach[0]
         slack = SLACK * self.oscillator.period + off
-        return Release(float(last[1]), last[4 : 4 + n], last[4 + n :], bool(last[3] < 0.0), slack)
+        return Release(float(last["end"]), u, v, bool(last["rebound"] < 0.0), slack)
 
 
 def peaks(orbit: PeriodicOrbit) -> list[tuple[int, float, float]]:
@@ -256,11 +258,10 @@ def peaks(orbit: PeriodicOrbit) -> list[tuple[int, float, float]]:
     Each is given by the number of the touch before it, the time since its end [s], and the height over the
     stop [m].
     """
-    motion, n = orbit.oscillator.motion(), orbit.oscillator.n_modes
-    found = list[tuple[int, float, float]]()
-    ends = np.append(orbit.record[1:, 0], orbit.duration)
-    for i, (row, end) in enumerate(zip(orbit.record, ends, strict=True)):
-        base, u, v = float(orbit.phase + row[1]), row[4 : 4 + n].copy(), row[4 + n :].copy()
-        times = peaks_of_flight(motion, base, u, v, (0.0, end - row[1]), False).tolist()
+    motion, log, found = orbit.oscillator.motion(), orbit.record.log, list[tuple[int, float, float]]()
+    ends = np.append(log["start"][1:], orbit.duration)
+    for i, (left, (u, v), end) in enumerate(zip(log["end"], orbit.record.states[:, 1], ends, strict=True)):
+        base = float(orbit.phase + left)
+        times = peaks_of_flight(motion, base, u, v, (0.0, end - left), False).tolist()
         found += [(i, s, float(tip_at(motion, base, u, v, s)[0])) for s in times]
     return found

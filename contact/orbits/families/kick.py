@@ -5,7 +5,7 @@ changes the deviations of all modes by B(v), referred to the touch by their free
 happens once in m drive periods follows from B (``contact.orbits.families.single_impact``).  The p_m orbit
 ends (fold) where its amplitude is smallest.  With Newton's law B is proportional to v and the result exact.
 
-``DelayedRestitution`` (one mode) has its orbits in closed form (``contact.touch.delayed``).
+A law can have its orbits in closed form, as ``DelayedRestitution`` (``contact.touch``, `repeated_touch`).
 
 The real collision starts with the ringing w left over from the last one and at another acceleration of the
 tip, which this neglects.  A second collision, simulated from w itself, gives another A at the same v.  The
@@ -24,8 +24,8 @@ from contact.flight.modal_flow import free_flow
 from contact.flight.variation import variation
 from contact.orbits.families.single_impact import Kick, SingleImpactFamily, SingleImpactOrbit
 from contact.sensitivity.touch_flow import FEWER_TOUCHES, flow_error, flow_from_touch
-from contact.touch import waits
-from contact.touch.delayed import repeated_touch
+from contact.touch import TOUCHES
+from contact.touch.record import new_touches
 
 MOST_TOUCHES = 200  # bound of touches in one collision: a bare tip under a stiff spring makes some dozens
 WINDOW = 0.5  # part of a drive period after the first touch in which further touches belong to the collision
@@ -54,7 +54,7 @@ class KickFamily(SingleImpactFamily):
     def kick(self, speed: float, deviations: Array | None = None) -> Kick:
         """One collision with approach velocity `speed` [m/s], from rest or given `deviations`, (n_modes, 2).
 
-        From rest, a collision under `DelayedRestitution` is the one that repeats once in m drive periods.
+        From rest, where the law has it in closed form, it is the one that repeats once in m drive periods.
         NotPeriodic is raised if it does not end within half a drive period, or its delay takes m periods.
         """
         require_within("speed", speed, "m/s", above=0)
@@ -63,10 +63,12 @@ class KickFamily(SingleImpactFamily):
             return self._simulated(speed, require_array("deviations", deviations, unit, shape=shape))
         if self.collision is not None:
             return self.collision(speed)
-        if waits(motion := self.oscillator.motion()):
-            jump, delay, leaves = repeated_touch(motion, speed, self.period)
-            return Kick(speed=speed, jump=jump, duration=delay, leaves=leaves)
-        return self._simulated(speed, np.zeros((self.oscillator.n_modes, 2)))
+        motion = self.oscillator.motion()
+        known = TOUCHES[motion.law].repeated_touch(motion, speed, self.period)
+        if known is not None:
+            jump, duration, leaves = known
+            return Kick(speed=speed, jump=jump, duration=duration, leaves=leaves)
+        return self._simulated(speed, np.zeros((motion.size, 2)))
 
     def _simulated(self, speed: float, w: Array) -> Kick:
         """The collision from the deviations `w`, shape (n_modes, 2)."""
@@ -75,16 +77,16 @@ class KickFamily(SingleImpactFamily):
         amplitude, phase = self.oscillator.drive_at(self.oscillator.stop.gap - p, speed - r)
         motion = self.oscillator.with_amplitude(amplitude).motion()
         vary = variation(motion, self.oscillator.tip_response())
-        (u, v), record = w.T.copy(), np.full((MOST_TOUCHES + 1, 4 + 2 * n), np.nan)
+        (u, v), record = w.T.copy(), new_touches(MOST_TOUCHES + 1, n)
         outcome = flow_from_touch(vary, phase, u, v, window, np.empty((0, 0)), record)
         if outcome != FEWER_TOUCHES:
             raise flow_error(outcome, phase, speed, "the collision does not end within half a drive period")
-        touches = int(np.count_nonzero(np.isfinite(record[:, 0])))
-        _start, end, _approach, rebound = record[touches - 1, :4].tolist()
-        left = record[touches - 1, 4:].reshape(2, n).T
+        record = record.since(phase)
+        last, left = record.log[-1], record.states[-1, 1].T
         # the flow turned back to the touch, less what was there
-        jump = np.einsum("kij,kj->ki", free_flow(motion, -end), left) - w
-        return Kick(speed=speed, jump=jump, touches=touches, duration=end, leaves=rebound < 0.0)
+        jump = np.einsum("kij,kj->ki", free_flow(motion, -last["end"]), left) - w
+        leaves, duration = bool(last["rebound"] < 0.0), float(last["end"])
+        return Kick(speed=speed, jump=jump, touches=len(record.log), duration=duration, leaves=leaves)
 
     def error(self, orbit: SingleImpactOrbit) -> float:
         """Estimated error of the excess of an orbit: its change if the collision starts from the ringing."""

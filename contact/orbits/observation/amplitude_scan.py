@@ -26,7 +26,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from beam.parameters import InvalidValue, require_array, require_kind, require_whole
-from contact.engine.event_loop import DONE, STATE
+from contact.engine.event_loop import DONE
 from contact.engine.start import failure
 from contact.flight.modal_flow import tip_rounding, tip_state
 from contact.flight.motion import Motion
@@ -36,6 +36,7 @@ from contact.maps.stroboscope import StroboscopicMap
 from contact.orbits.observation.repetition import free_for_good, repetition
 from contact.orbits.observation.settling import TOLERANCE
 from contact.oscillator import ImpactOscillator
+from contact.touch.passage import STATE
 from contact.trajectory import OUTSIDE
 
 LARGEST_PERIOD = 64  # longest period that is recognised
@@ -47,28 +48,28 @@ period 3 whose multiplier is 0.97 still changes by 1e-6 per period."""
 
 BLOCK = 32  # drive periods between two comparisons: the fewest that show a period, 2 SHORTEST
 BEHIND = -1  # status of a state behind the stop, from the amplitude before, where no flight can start
-EXTRA = 3  # numbers of a state in addition to (q, q'): regime, wait, rebound
 
 
 @kernel
-def settled_column(system, amplitudes, state, most_cycles, tolerance, found, u, v, runs):
+def settled_column(system, amplitudes, reached, most_cycles, tolerance, found, u, v, runs):
     """Settle at each of `amplitudes` in turn, or until one fails; return how many are done, and the status.
 
     The amplitudes count relative to that of grazing, to which `system` belongs, and `tolerance` of a
-    repetition is in the unit of the coordinates [m].  Overwritten are `state`, shape (2 n_modes + 3,), by the
-    last state that was reached; `found`, shape (n, 3), by period, impacts and drive periods spent; and `u`,
-    `v` and `runs` (`STATE`) by deviations and run at a failure.
+    repetition is in the unit of the coordinates [m].  Overwritten are `reached` by the last state that was
+    reached, the modal one of shape (2 n_modes,) and its `STATE`; `found`, shape (n, 3), by period, impacts
+    and drive periods spent; and `u`, `v` and `runs` (`STATE`) by deviations and run at a failure.
     """
-    n, run, capacity = system.motion.size, runs[0], 2 * LARGEST_PERIOD
+    n, run, capacity, (state, touching) = system.motion.size, runs[0], 2 * LARGEST_PERIOD, reached
     points, impacts = np.empty((capacity, 2 * n)), np.zeros(capacity, dtype=np.int64)
     as_is = np.empty(0)
     for a in range(amplitudes.size):
         local = at_amplitude(system, amplitudes[a])
         here, mean = local.motion, local.mean.copy()
         local.mean[:] = 0.0  # the points are those of the deviations
-        u[:], v[:] = state[:n] - mean[:n], state[n : 2 * n] - mean[n:]
-        run.regime, run.wait, run.rebound = int(state[2 * n]), state[2 * n + 1], state[2 * n + 2]
-        run.contact_order, run.period, run.steps, run.clock, run.root, run.speed = 0, 0, 0, 0.0, -1.0, -1.0
+        u[:], v[:] = state[:n] - mean[:n], state[n:] - mean[n:]
+        runs[0] = touching[0]
+        run.contact_order, run.period, run.steps, run.clock = 0, 0, 0, 0.0
+        run.memory0, run.memory1 = -1.0, -1.0
         rows, cycles, period, status = 0, 0, 0, DONE
         if run.regime == OUTSIDE and tip_state(here, 0.0, u, v)[0] > tip_rounding(here, u, v):
             status = BEHIND
@@ -91,8 +92,8 @@ def settled_column(system, amplitudes, state, most_cycles, tolerance, found, u, 
                     stretch *= 2
         if status != DONE:
             return a, status
-        state[:n], state[n : 2 * n] = u + mean[:n], v + mean[n:]
-        state[2 * n], state[2 * n + 1], state[2 * n + 2] = run.regime, run.wait, run.rebound
+        state[:n], state[n:] = u + mean[:n], v + mean[n:]
+        touching[0] = runs[0]
         hits = impacts[max(0, rows - period) if period > 0 else 0 : rows].sum()
         found[a, 0], found[a, 1], found[a, 2] = period, hits, cycles
     return amplitudes.size, DONE
@@ -142,14 +143,14 @@ class AmplitudeScan:
         drive, n = replace(self.oscillator.driven, frequency=frequency), self.oscillator.n_modes
         oscillator = replace(self.oscillator, drive=drive).with_excess(0.0)
         steady = StroboscopicMap(oscillator=oscillator).at(float(rising[0])).steady()
-        state = np.concatenate([steady.displacement, steady.velocity, np.zeros(EXTRA)])
+        reached = np.concatenate([steady.displacement, steady.velocity]), np.zeros(1, STATE)
         system, tolerance = strobed_system(oscillator), TOLERANCE * oscillator.stop.gap
-        u, v, runs = np.empty(n), np.empty(n), np.zeros(1, dtype=STATE)
+        u, v, runs = np.empty(n), np.empty(n), np.zeros(1, STATE)
         path = np.concatenate([rising, rising[::-1]])
         found, reasons, at = np.full((path.size, 3), -1, dtype=np.int64), [""] * path.size, 0
         while at < path.size:
             done, status = settled_column(
-                system, 1.0 + path[at:], state, self.most_cycles, tolerance, found[at:], u, v, runs
+                system, 1.0 + path[at:], reached, self.most_cycles, tolerance, found[at:], u, v, runs
             )
             at += done
             if status != DONE:
