@@ -14,13 +14,12 @@ from typing import NamedTuple
 import numpy as np
 
 from contact import touch
-from contact.engine.recorder import put_sample, sample_due, strobe
+from contact.engine.recorder import put_sample, sample_due, sample_flight, strobe
 from contact.flight.crossing import CROSSES, FREE, UNRESOLVED, searched_flight
 from contact.flight.modal_flow import apply_flow, flow_over, load_state, new_flight, propagate_flight
 from contact.flight.sampled_crossing import first_sampled_crossing
-from contact.machine.compiled import borrowed, held, inlined, kernel, part
-from contact.touch.passage import AT_END, RELEASED, TOO_MANY, follower, meet
-from contact.touch.record import add_loss, is_full
+from contact.machine.compiled import borrowed, held, kernel, part
+from contact.touch.passage import AT_END, RELEASED, TOO_MANY, add_loss, follower, is_full, meet
 from contact.touch.series import Series, new_series
 from contact.trajectory import OUTSIDE
 
@@ -60,25 +59,6 @@ def new_workspace(motion):
     )
 
 
-@kernel
-def sample_flight(motion, run, until, space, recorder):
-    """Write states at the sample times of a flight up to `until` [s]."""
-    while sample_due(recorder, run.period, until):
-        time = recorder.sample_clock[recorder.marks[0].sampled] - run.clock
-        propagate_flight(motion, space.flight, time, space.u, space.v)
-        put_sample(recorder, space.u, space.v)
-
-
-@inlined
-def next_touch(motion, flight, base, duration, contact_order, samples):
-    """Outcome and time of the first touch of a flight, and the number of positions computed besides."""
-    if samples is None:
-        outcome, s = searched_flight(motion, flight, base, duration, contact_order)
-        return outcome, s, 0
-    else:
-        return first_sampled_crossing(motion, flight, base, duration, contact_order, samples)
-
-
 @part
 def follow_flights(motion, u, v, run, last, clock_end, space, recorder, samples):
     """Follow flights from strobe to strobe, to the next touch or the end of the run; returns the status."""
@@ -90,12 +70,16 @@ def follow_flights(motion, u, v, run, last, clock_end, space, recorder, samples)
         end = clock_end if at_last else motion.period
         if base < end:
             load_state(flight, u, v)
-            outcome, s, count = next_touch(motion, flight, base, end - base, run.contact_order, samples)
+            count, order = 0, run.contact_order
+            if samples is None:
+                outcome, s = searched_flight(motion, flight, base, end - base, order)
+            else:
+                outcome, s, count = first_sampled_crossing(motion, flight, base, end - base, order, samples)
             run.evaluations += count + 1
             run.steps += 1
             until = end if outcome == FREE else base + s
             if marks.sampled < wanted and outcome != UNRESOLVED:
-                sample_flight(motion, run, until, space, recorder)
+                sample_flight(motion, run, until, space.flight, recorder)
             if outcome == FREE and base == 0.0 and not at_last:
                 apply_flow(whole, u, v)
             else:
@@ -107,12 +91,9 @@ def follow_flights(motion, u, v, run, last, clock_end, space, recorder, samples)
                 status = CROSSED if outcome == CROSSES else GRAZED
             run.contact_order = 0
         if status == GOING:
-            if at_last:
-                status = DONE
-            else:
-                strobe(marks, strobes, counts, u, v)
-                run.clock, run.steps = 0.0, 0
-                run.period += 1
+            status = DONE if at_last else GOING
+            if not at_last:
+                strobe(run, marks, strobes, counts, u, v)
     return status
 
 
@@ -149,13 +130,9 @@ def follow_contact(motion, u, v, run, last, clock_end, space, recorder):
             return FAILED_STEPS if left == TOO_MANY else FAILED_SERIES
         while sample_due(recorder, run.period, end):  # samples closer to the end than any step
             put_sample(recorder, u, v)
-        run.clock = end
-        if at_last:
-            status = DONE
-        else:
-            strobe(recorder.marks[0], recorder.strobes, recorder.counts, u, v)
-            run.clock, run.steps = 0.0, 0
-            run.period += 1
+        run.clock, status = end, DONE if at_last else GOING
+        if not at_last:
+            strobe(run, recorder.marks[0], recorder.strobes, recorder.counts, u, v)
     return status
 
 

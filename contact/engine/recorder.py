@@ -1,6 +1,6 @@
 """The record of a run: impacts, strobes and samples, for exact and fixed-step methods alike.
 
-Touches are kept as in ``contact.touch.record``, and times alike.  A method with a time step counts from one
+Touches are kept as in ``contact.touch.passage``, and times alike.  A method with a time step counts from one
 strobe throughout, and has its strobes among the samples (``contact.integrators.fixed_step``).
 """
 
@@ -9,17 +9,17 @@ from typing import NamedTuple
 import numpy as np
 
 from contact.errors import ContactError
-from contact.flight.modal_flow import steady_motion
+from contact.flight.modal_flow import propagate_flight, steady_motion
 from contact.machine.compiled import inlined, kernel, part
 from contact.oscillator import ImpactOscillator
-from contact.touch.record import MARKS, TOUCH, new_touches, put_state
+from contact.touch.passage import MARKS, TOUCH, new_touches, put_state
 from contact.trajectory import STAY, Impacts, Run, State, Trajectory, steady_states
 
 FIRST_TOUCHES = 64  # capacity of a new log, which grows by itself
 
 
 class Recorder(NamedTuple):
-    """The arrays into which a run writes: those of ``touch.record.Touches``, and more."""
+    """The arrays into which a run writes: those of ``touch.passage.Touches``, and more."""
 
     marks: np.ndarray
     log: np.ndarray
@@ -63,12 +63,24 @@ def put_sample(recorder, u, v):
     marks.sampled += 1
 
 
+@kernel
+def sample_flight(motion, run, until, flight, recorder):
+    """Write states at the sample times of a flight up to `until` [s]."""
+    u, v = np.empty(motion.size), np.empty(motion.size)
+    while sample_due(recorder, run.period, until):
+        time = recorder.sample_clock[recorder.marks[0].sampled] - run.clock
+        propagate_flight(motion, flight, time, u, v)
+        put_sample(recorder, u, v)
+
+
 @inlined
-def strobe(marks, strobes, counts, u, v):
-    """Write the state at the next strobe, and the impacts since the strobe before.
+def strobe(run, marks, strobes, counts, u, v):
+    """A drive period ends: write the state at the strobe, and the impacts since the strobe before.
 
     It takes no recorder, since each array in a tuple costs some nanoseconds a call.
     """
+    run.clock, run.steps = 0.0, 0
+    run.period += 1
     if counts.size > 0:
         counts[marks.strobed] = marks.impacts
     if strobes.shape[0] > 0:
@@ -115,8 +127,8 @@ def trajectory_of(
     n, marks, period, motion = oscillator.n_modes, recorder.marks[0], oscillator.period, oscillator.motion()
     left = slice(int(marks["sampled"]), None)
     if np.any((recorder.sample_period[left] < run.last) | (recorder.sample_clock[left] < run.clock_end)):
-        tip = oscillator.tip(np.array([end.displacement, end.velocity]))
-        place = {"time": end.time, "gap": oscillator.stop.gap - float(tip[0]), "velocity": float(tip[1])}
+        height, velocity = np.array([end.displacement, end.velocity]) @ motion.phi
+        place = {"time": end.time, "gap": motion.gap - float(height), "velocity": float(velocity)}
         raise ContactError(**place, detail="the state at one of the times was not written down")
     logged, passed = int(marks["logged"]), run.last - run.first
     log, touches = recorder.log[:logged], recorder.log_state[:logged].reshape(logged, 2, 2, n).copy()

@@ -8,11 +8,10 @@ from contact.engine.recorder import grown, recorder_for, trajectory_of
 from contact.errors import Chatter, ContactError, ContactTooStiff, UnresolvedCrossing
 from contact.flight.modal_flow import steady_motion, tip_rounding, tip_state
 from contact.flight.motion import Motion
-from contact.flight.sampled_crossing import samples_of
+from contact.flight.sampled_crossing import Samples
 from contact.oscillator import ImpactOscillator
 from contact.touch import TOUCHES, force
-from contact.touch.passage import STATE
-from contact.touch.record import open_touch
+from contact.touch.passage import STATE, open_touch
 from contact.trajectory import OUTSIDE, SUSTAINED, WAITING, ImpactKind, Regime, Run, State, Trajectory
 
 HELD_WITHIN = 1e3  # largest distance from the gap of a tip that rests on the wall, in rounding bounds
@@ -92,16 +91,15 @@ def failure(status: int, motion: Motion, runs: np.ndarray, u: np.ndarray, v: np.
     return error(time=time, gap=-height, velocity=velocity, detail=detail)
 
 
-def exact_trajectory(oscillator: ImpactOscillator, run: Run, *, points: int | None = None) -> Trajectory:
+def exact_trajectory(oscillator: ImpactOscillator, run: Run, samples: Samples | None = None) -> Trajectory:
     """The motion of `run`, event by event.
 
-    Crossings of the stop are proved, or detected at so many `points` of each drive period.
+    Crossings of the stop are proved, or with `samples` detected at these.
     Raises ValueError as `start_of` does, and UnresolvedCrossing, Chatter or ContactTooStiff if the motion
     cannot be followed.
     """
     motion, n = oscillator.motion(), oscillator.n_modes
     u, v, runs = start_of(motion, run.start, run.first, run.clock)
-    samples = None if points is None else samples_of(motion, points)
     recorder = recorder_for(run, n)
     if runs[0]["regime"] != OUTSIDE:
         kind = ImpactKind.STAY if runs[0]["regime"] == SUSTAINED else ImpactKind.UNDER_WAY

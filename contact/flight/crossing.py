@@ -189,8 +189,8 @@ def outcome_at_peak(motion, flight, base, point, step, duration, m3, margin):
 def searched_flight(motion, flight, base, duration, contact_order):
     """`first_crossing` of the flight that starts at rows START_U and START_V of its workspace."""
     n, above = motion.size, flight[rows.ABOVE]
-    margin = tip_rounding(motion, flight[rows.START_U], flight[rows.START_V])
     must, whole = amplitudes(motion, flight)
+    margin = tip_rounding(motion, flight[rows.START_U], flight[rows.START_V])
     if contact_order == 0 and motion.level + motion.amplitude + whole < -margin:
         return FREE, duration
     lowest = lowest_mode(motion, flight, base, duration, above[0], margin)

@@ -49,8 +49,7 @@ from contact.flight.motion import (
     WEIGHT,
     Motion,
 )
-from contact.machine.compiled import inlined, kernel
-from contact.machine.vector_loops import aligned
+from contact.machine.compiled import aligned, inlined, kernel
 
 START_U, START_V, U, V, HEIGHT, RATE, ACCELERATION, JERK_BOUND, ABOVE = range(9)
 """Rows of the workspace of a flight: deviation and velocity at its start, and now; their parts of the tip
@@ -270,16 +269,6 @@ def tip_rounding(motion, u, v):
     phi, time_scale = motion.modes[WEIGHT], motion.modes[TIME_SCALE]
     for k in range(u.size):
         total += abs(phi[k]) * (abs(u[k]) + abs(v[k]) * time_scale[k])
-    return 4.0 * EPS * total
-
-
-@kernel
-def acceleration_rounding(motion, u, v):
-    """Bound of the rounding error of the tip acceleration at (u, v) [m/s^2]."""
-    total, modes = (abs(motion.tip_sine) + abs(motion.tip_cosine)) * motion.drive**2, motion.modes
-    for k in range(u.size):
-        pull = modes[SQUARE, k] * abs(u[k]) + modes[DECAY, k] * abs(v[k]) + abs(modes[LOAD, k])
-        total += abs(modes[WEIGHT, k]) * pull
     return 4.0 * EPS * total
 
 

@@ -28,7 +28,7 @@ from contact.flight.modal_flow import (
     tip_state,
 )
 from contact.flight.motion import Motion
-from contact.flight.tip_search import find_peak, find_root, tip_now
+from contact.flight.tip_search import find_peak, root_between, tip_now
 from contact.machine.compiled import kernel
 
 ALIGNED = 1e-9
@@ -47,14 +47,6 @@ def samples_of(motion: Motion, points: int) -> Samples:
     """Samples at so many `points` of each drive period."""
     spacing = motion.period / points
     return Samples(spacing, flow_over(motion, spacing))
-
-
-@kernel
-def root_between(motion, flight, base, low, high, margin):
-    """The root of the tip displacement in [low, high] [s]."""
-    middle = 0.5 * (low + high)
-    y0, y1, y2 = tip_now(motion, flight, base, middle)
-    return find_root(motion, flight, base, (middle, y0, y1, y2), (low, high), math.inf, margin)
 
 
 @kernel

@@ -77,6 +77,14 @@ def find_root(motion, flight, base, point, bracket, m3, margin):
 
 
 @kernel
+def root_between(motion, flight, base, low, high, margin):
+    """The root of the tip displacement in [low, high] [s]."""
+    middle = 0.5 * (low + high)
+    y0, y1, y2 = tip_now(motion, flight, base, middle)
+    return find_root(motion, flight, base, (middle, y0, y1, y2), (low, high), math.inf, margin)
+
+
+@kernel
 def find_peak(motion, flight, base, point, bracket, m3, margin):
     """The peak of the tip displacement in a `bracket` where it is concave [s]; arguments of `find_root`."""
     s, _y0, y1, y2 = point

@@ -23,6 +23,7 @@ from typing import ClassVar
 
 from beam.parameters import require_whole
 from contact.engine.start import exact_trajectory
+from contact.flight.sampled_crossing import samples_of
 from contact.integrators.method import Integrator
 from contact.oscillator import ImpactOscillator
 from contact.touch import TOUCHES
@@ -66,4 +67,4 @@ class SampledFlight(Integrator):
 
     def follow(self, oscillator: ImpactOscillator, run: Run) -> Trajectory:
         """The motion of `run`, exact to rounding if no crossing is missed."""
-        return exact_trajectory(oscillator, run, points=self.points)
+        return exact_trajectory(oscillator, run, samples_of(oscillator.motion(), self.points))

@@ -17,7 +17,7 @@ from contact.integrators.method import Integrator
 from contact.laws import LINEAR
 from contact.oscillator import ImpactOscillator
 from contact.touch import TOUCHES
-from contact.touch.record import open_touch
+from contact.touch.passage import open_touch
 from contact.trajectory import CONTACT, OUTSIDE, UNDER_WAY, Run, State, Trajectory
 
 

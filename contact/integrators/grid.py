@@ -24,7 +24,7 @@ from contact.engine.recorder import Recorder, put_sample, sample_due
 from contact.flight.modal_flow import push_on, tip_sum
 from contact.flight.motion import DECAY, SQUARE, Motion
 from contact.machine.compiled import inlined, kernel, part
-from contact.touch.record import add_loss, close_touch, is_full, open_touch
+from contact.touch.passage import add_loss, close_touch, is_full, open_touch
 from contact.trajectory import IMPACT
 
 DONE, FULL, TOO_LARGE, DIVERGED = 0, 1, 2, 3

@@ -60,7 +60,7 @@ from contact.integrators.grid import (
 )
 from contact.laws import NEWTON
 from contact.machine.compiled import inlined, kernel
-from contact.touch.record import add_loss, close_touch, open_touch
+from contact.touch.passage import add_loss, close_touch, open_touch
 from contact.trajectory import IMPACT
 
 MARGIN = 1e-12  # slack of the test for stability, relative to its two terms, which cancel on the limit

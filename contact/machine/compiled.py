@@ -29,6 +29,7 @@ from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numba
+import numpy as np
 from numba.core import cgutils, event, types
 from numba.core import config as numba_config
 from numba.extending import intrinsic
@@ -152,6 +153,18 @@ def part(function: Function) -> Function:
     A part is compiled only inside its callers, never alone.
     """
     return cast(Function, numba.njit(inline="always", nogil=True, error_model="numpy")(function))
+
+
+LINE = 64  # bytes that the processor fetches at once; rows that begin at multiples of this are read faster
+
+
+@kernel
+def aligned(rows, columns):
+    """An array of zeros whose first element lies at a multiple of 64 bytes."""
+    words = LINE // 8
+    buffer = np.zeros(rows * columns + words)
+    first = (-(buffer.ctypes.data // 8)) % words
+    return buffer[first : first + rows * columns].reshape(rows, columns)
 
 
 def _uncounted(context, builder, kind, value):

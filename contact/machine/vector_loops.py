@@ -6,28 +6,15 @@ term.  These loops are therefore written in LLVM's language: eight columns at a 
 from the first term to the last.  On every processor even and odd terms are added separately, then their sums.
 """
 
-import numpy as np
 from llvmlite import ir
 from numba.core import cgutils, types
 from numba.extending import intrinsic
 
-from contact.machine.compiled import kernel
-
 LANES = 8  # numbers side by side in the widest vector registers in use
-_LINE = 64  # bytes that the processor fetches at once; rows that begin at multiples of this are read faster
 _GROUP = 4  # blocks of eight columns that share a pass over the terms
 
 _REAL = ir.DoubleType()
 _EIGHT = ir.VectorType(_REAL, LANES)
-
-
-@kernel
-def aligned(rows, columns):
-    """An array of zeros whose first element lies at a multiple of 64 bytes."""
-    words = _LINE // 8
-    buffer = np.zeros(rows * columns + words)
-    first = (-(buffer.ctypes.data // 8)) % words
-    return buffer[first : first + rows * columns].reshape(rows, columns)
 
 
 class _Rows:

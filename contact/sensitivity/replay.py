@@ -20,7 +20,7 @@ from contact.oscillator import ImpactOscillator
 from contact.sensitivity.change import Sensitivities
 from contact.sensitivity.touch_flow import FLOWN, TOUCHING, flow_error, flow_from_touch
 from contact.touch import TOUCHES
-from contact.touch.record import new_touches
+from contact.touch.passage import new_touches
 from contact.trajectory import ImpactKind, State, Trajectory
 
 

@@ -21,8 +21,7 @@ from contact.flight.modal_flow import propagate
 from contact.flight.variation import Variation, force_jump, tangent_flight, variation
 from contact.machine.compiled import borrowed, held, kernel, part
 from contact.oscillator import ImpactOscillator
-from contact.touch.passage import AT_END, RELEASED, STATE, begin, follower
-from contact.touch.record import Touches, new_touches
+from contact.touch.passage import AT_END, RELEASED, STATE, Touches, begin, follower, new_touches
 from contact.touch.series import new_series
 from contact.touch.tangent_series import new_tangent_workspace, tangent_step
 from contact.trajectory import CONTACT, OUTSIDE, SUSTAINED

@@ -24,15 +24,8 @@ series is that of ``contact.touch.time_series``.
 import math
 
 from contact.flight.elementary import EPS
-from contact.flight.modal_flow import (
-    acceleration_rounding,
-    hold,
-    mode_acceleration,
-    push_on,
-    tip_rounding,
-    tip_state,
-    tip_sum,
-)
+from contact.flight.modal_flow import hold, mode_acceleration, push_on, tip_rounding, tip_state, tip_sum
+from contact.flight.motion import DECAY, LOAD, SQUARE, WEIGHT
 from contact.flight.polynomial_root import first_polynomial_root
 from contact.flight.tip_search import jerk_bound
 from contact.flight.variation import NUMBER0, all_tip_changes
@@ -118,6 +111,16 @@ def strike(motion, run, u, v, approach):
         return SUSTAINED, -e * approach, loss
     run.contact_order = 1 if e * approach > 0.0 else 2
     return OUTSIDE, -e * approach, loss
+
+
+@kernel
+def acceleration_rounding(motion, u, v):
+    """Bound of the rounding error of the tip acceleration at (u, v) [m/s^2]."""
+    total, modes = (abs(motion.tip_sine) + abs(motion.tip_cosine)) * motion.drive**2, motion.modes
+    for k in range(u.size):
+        pull = modes[SQUARE, k] * abs(u[k]) + modes[DECAY, k] * abs(v[k]) + abs(modes[LOAD, k])
+        total += abs(modes[WEIGHT, k]) * pull
+    return 4.0 * EPS * total
 
 
 @kernel

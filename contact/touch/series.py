@@ -20,8 +20,8 @@ from typing import NamedTuple
 import numpy as np
 
 from contact.flight.modal_flow import tip_state
-from contact.machine.compiled import inlined, kernel, part
-from contact.machine.vector_loops import aligned, weighted_rows
+from contact.machine.compiled import aligned, inlined, kernel, part
+from contact.machine.vector_loops import weighted_rows
 from contact.trajectory import CONTACT
 
 WINDOW = 8  # number of last orders of the force that limit a step

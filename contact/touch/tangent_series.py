@@ -10,8 +10,8 @@ import numpy as np
 
 from contact.flight.motion import DECAY, LOAD, SQUARE, WEIGHT
 from contact.flight.variation import DRIVE, NUMBER0, NUMBER1, drive_now, parameter_changes, tip_changes
-from contact.machine.compiled import kernel
-from contact.machine.vector_loops import LANES, aligned, weighted_rows
+from contact.machine.compiled import aligned, kernel
+from contact.machine.vector_loops import LANES, weighted_rows
 from contact.touch.series import powers_of
 
 

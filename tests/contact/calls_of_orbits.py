@@ -9,7 +9,7 @@ from cases_of_calls import GAP, HERTZ, NEWTON
 
 import contact
 from contact import Regime, orbits
-from contact.touch.record import Touches
+from contact.touch.passage import Touches
 
 # an orbit of another period, of the same one with more touches, and of an oscillator with another gap
 P4 = told(dataclasses.replace(HERTZ.family, period=4).at_speed(0.1), "has 4 drive periods; it must have 5")

@@ -12,7 +12,7 @@ from contact.engine.start import start_of
 from contact.flight.elementary import EPS
 from contact.maps.strobed_motion import strobed_system
 from contact.one_mode.loop import one_mode_periods
-from contact.touch.record import TOUCH
+from contact.touch.passage import TOUCH
 from contact.trajectory import IMPACT
 
 GAP = 0.01

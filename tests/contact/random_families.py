@@ -108,7 +108,7 @@ class Curve:
         return np.concatenate([orbit.deviations, [orbit.speed, p]]) / self.scale
 
     def equations(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """What is left of them, their derivatives with all unknowns but p, and the record of the touches."""
+        """What is left of them, their derivatives with all unknowns but p, and the touches."""
         (*start, speed, p), n = x * self.scale, x.size - 2
         oscillator = self.path(p)
         tip = np.kron(np.eye(2), oscillator.model.phi)
@@ -183,7 +183,7 @@ class Curve:
             ends = [self.solve(x + h * across, across) for h in (step, -step)]
             if None not in ends:
                 sides = [end[0][-1] - x[-1] for end in ends]
-                speeds = [self.equations(y)[2][:, 2] for y in (x, ends[0][0])]
+                speeds = [self.equations(y)[2].log["approach"] for y in (x, ends[0][0])]
                 if np.divide(*(np.linalg.norm(self.unlike(row)) for row in speeds)) < 0.01:
                     return "is a branch point: a shorter orbit, run through several times"
                 return "" if sides[0] * sides[1] > 0.0 else "has an orbit on either side"

@@ -22,7 +22,7 @@ from contact.orbits.families.kick import KickFamily
 from contact.oscillator import ImpactOscillator
 from contact.sensitivity.touch_flow import flow_over_periods
 from contact.simulation import simulate
-from contact.touch.record import Touches
+from contact.touch.passage import Touches
 from contact.trajectory import ImpactKind, Regime, State
 
 STEEPEST = 1e10

@@ -33,7 +33,7 @@ from contact.oscillator import ImpactOscillator
 from contact.sensitivity.change import Sensitivities
 from contact.sensitivity.replay import deviation_rates
 from contact.sensitivity.touch_flow import flow_over_periods
-from contact.touch.record import Touches
+from contact.touch.passage import Touches
 
 CONVERGED = 1e-12  # largest residual over the sizes; rounding of the flow over m periods is about 1e-14
 

@@ -26,7 +26,7 @@ from contact.flight.modal_flow import steady_motion, tip_state
 from contact.flight.tip_search import peaks_of_flight, tip_at
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
-from contact.touch.record import Touches
+from contact.touch.passage import Touches
 from contact.trajectory import ImpactKind, State
 
 Failure = TypeVar("Failure", bound=ContactError)
@@ -193,7 +193,7 @@ class PeriodicOrbit(TouchOrbit):
     Parameters
     ----------
     record : Touches
-        Its touches (``contact.touch.record``), at times since the first one.
+        Its touches (``contact.touch.passage``), at times since the first one.
     tangent : ndarray, shape (2 n_modes, 2 n_modes)
         Its monodromy matrix.
     slope, residual : float

@@ -25,7 +25,7 @@ from contact.flight.variation import variation
 from contact.orbits.families.single_impact import Kick, SingleImpactFamily, SingleImpactOrbit
 from contact.sensitivity.touch_flow import FEWER_TOUCHES, flow_error, flow_from_touch
 from contact.touch import TOUCHES
-from contact.touch.record import new_touches
+from contact.touch.passage import new_touches
 
 MOST_TOUCHES = 200  # bound of touches in one collision: a bare tip under a stiff spring makes some dozens
 WINDOW = 0.5  # part of a drive period after the first touch in which further touches belong to the collision
