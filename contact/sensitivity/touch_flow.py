@@ -107,7 +107,8 @@ def flow_from_touch(vary, base, u, v, duration, tangent, touches):
         columns no tangents are computed.
     touches : Touches
         With a row for each contact to go through; in the last flight the wall is ignored.  Filled with these
-        contacts, at drive times.  The rebound velocity is zero only after an impact that gives none.
+        contacts, at times since the first one.  The rebound velocity is zero only after an impact that gives
+        none.
 
     Returns the outcome: FLOWN, FEWER_TOUCHES, FAILED, TOUCHING or TOO_STIFF.
     """
@@ -131,6 +132,9 @@ def flow_from_touch(vary, base, u, v, duration, tangent, touches):
             break
     if outcome == FLOWN:
         fly(vary, u, v, tangent, run.clock, end - run.clock)
+    for i in range(touches.marks[0].logged):
+        touches.log[i].start -= base
+        touches.log[i].end -= base
     held(runs)  # a record does not keep the array it lies in
     return outcome
 
@@ -166,4 +170,4 @@ def flow_over_periods(
     if outcome != FLOWN:
         words = f"an orbit of period {period} with {touches} touches was lost"
         raise flow_error(outcome, phase, float(record.log[0]["approach"]), words)
-    return np.concatenate([u, v]), tangent, record.since(phase)
+    return np.concatenate([u, v]), tangent, record

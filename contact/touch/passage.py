@@ -11,8 +11,6 @@ periods bring no loss of phase.  In an orbit they count from its first touch.  S
 method carries: deviations from the steady motion, or displacements and velocities themselves.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from types import ModuleType
@@ -47,13 +45,6 @@ class Touches(NamedTuple):
     def states(self) -> Array:
         """(u, v) just before and just after each touch, shape (capacity, 2, 2, n_modes)."""
         return self.log_state.reshape(len(self.log), 2, 2, -1)
-
-    def since(self, start: float) -> Touches:
-        """The touches so far, their times counted from `start` [s]."""
-        logged = int(self.marks[0]["logged"])
-        log = self.log[:logged].copy()
-        log["start"], log["end"] = log["start"] - start, log["end"] - start
-        return Touches(self.marks, log, self.log_state[:logged])
 
 
 def new_touches(capacity: int, n_modes: int) -> Touches:

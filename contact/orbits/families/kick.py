@@ -81,12 +81,12 @@ class KickFamily(SingleImpactFamily):
         outcome = flow_from_touch(vary, phase, u, v, window, np.empty((0, 0)), record)
         if outcome != FEWER_TOUCHES:
             raise flow_error(outcome, phase, speed, "the collision does not end within half a drive period")
-        record = record.since(phase)
-        last, left = record.log[-1], record.states[-1, 1].T
+        touches = int(record.marks[0]["logged"])
+        last, left = record.log[touches - 1], record.states[touches - 1, 1].T
         # the flow turned back to the touch, less what was there
         jump = np.einsum("kij,kj->ki", free_flow(motion, -last["end"]), left) - w
         leaves, duration = bool(last["rebound"] < 0.0), float(last["end"])
-        return Kick(speed=speed, jump=jump, touches=len(record.log), duration=duration, leaves=leaves)
+        return Kick(speed=speed, jump=jump, touches=touches, duration=duration, leaves=leaves)
 
     def error(self, orbit: SingleImpactOrbit) -> float:
         """Estimated error of the excess of an orbit: its change if the collision starts from the ringing."""
