@@ -42,7 +42,7 @@ class Motion(NamedTuple):
     all_underdamped: bool  # whether all modes are under-damped and without load
     phase_rate: float  # largest d [rad/s]
     fastest: float  # largest of w, omega and c [rad/s]
-    table: np.ndarray  # the law's functions of the approach speed, sampled, shape (5, n)
+    table: np.ndarray  # more numbers of the law, in two dimensions, as its file reads them
 
     def row(self, row: int) -> np.ndarray:
         """A row of the table, shape (n_modes,)."""
