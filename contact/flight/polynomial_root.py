@@ -98,12 +98,9 @@ def polynomial_root(coefficients, sign, height, low, high):
 
 def positive_roots(a: float, b: float, c: float) -> list[float]:
     """The positive solutions of a X^2 + b X + c = 0, ascending."""
-    if a == 0.0:
-        found = [-c / b] if b != 0.0 else []
-    else:
-        square = b * b - 4.0 * a * c
-        if square < 0.0:
-            return []
-        half = -0.5 * (b + math.copysign(math.sqrt(square), b))
-        found = [half / a] + ([c / half] if half != 0.0 else [])
+    square = b * b - 4.0 * a * c
+    if square < 0.0:
+        return []
+    half = -0.5 * (b + math.copysign(math.sqrt(square), b))
+    found = ([half / a] if a != 0.0 else []) + ([c / half] if half != 0.0 else [])
     return sorted(root for root in found if root > 0.0)

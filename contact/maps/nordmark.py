@@ -215,10 +215,6 @@ class NordmarkMap:
         """The excess F/F_g - 1 [1] at `rho`."""
         return require_within("rho", rho, "[1]") / self.rho_per_excess
 
-    def step(self, state: ArrayLike, rho: float) -> Array:
-        """The state (x, y), shape (2,), one drive period later."""
-        return self.iterate(state, rho, 1)[0]
-
     def iterate(self, state: ArrayLike, rho: ArrayLike, count: int) -> Array:
         """The `count` states that follow `state`, shape (count, 2); row 0 is one period later.
 
