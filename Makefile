@@ -36,7 +36,7 @@ test-generic: $(READY)
 	export NUMBA_CACHE_DIR="$$cache" && \
 	export NPY_DISABLE_CPU_FEATURES="$$($(BIN)/python -c '$(SIMD)')" && \
 	export NUMBA_CPU_NAME=generic NUMBA_CPU_FEATURES= OPENBLAS_CORETYPE=Prescott $(ONE_THREAD) && \
-	$(BIN)/python -m contact.machine.warm_up && \
+	$(BIN)/python -m contact.warm_up && \
 	$(BIN)/python -m pytest -n 2 -rs -m "not slow" $(NUMBERS)
 
 lint: $(READY)
@@ -51,7 +51,7 @@ $(READY): pyproject.toml constraints.txt
 	@$(PYTHON) -m venv .venv
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[test]'
 	@echo "compiling the kernels (about a minute, once)"
-	@$(ONE_THREAD) $(BIN)/python -m contact.machine.warm_up
+	@$(ONE_THREAD) $(BIN)/python -m contact.warm_up
 	@touch $@
 
 clean:

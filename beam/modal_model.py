@@ -37,7 +37,6 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.linalg import eigh
 
 from .parameters import final, require, require_array, require_kind, require_whole, require_within, suspect
 
@@ -215,6 +214,8 @@ class ModalModel:
         This model's modes must belong to a fixed base. If mode 1 was `measured_on_it`, the mode that moves
         the tip most keeps the frequency and the decay rate of mode 1.
         """
+        from scipy.linalg import eigh  # slow to import
+
         require_within("suspension_hz", suspension_hz, "Hz", low=0)
         require_within("damping_ratio", damping_ratio, "[1]", low=0)
         gamma, square, n, k = self.participation, self.omega**2, self.n_modes, self.leading_mode

@@ -36,6 +36,7 @@ The files: the problem and its answer
     ``virtual_motion``  the motion of mode 1 as if there were no stop
     ``collision``       `collisions`: the effect of each collision on mode 1; `first_collision`
     ``errors``          the `ContactError` family, for motions that cannot be followed
+    ``warm_up``         a program that compiles all kernels once: ``python -m contact.warm_up``
 
 The folders, from the machine to the orbits
     ``machine``         compiled kernels and where their machine code is kept

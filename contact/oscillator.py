@@ -34,6 +34,7 @@ from beam.parameters import (
 )
 from contact.drive import HarmonicDrive
 from contact.flight.motion import Motion, motion_of, with_drive
+from contact.laws import NewtonRestitution
 from contact.stop import Stop
 
 GREATEST_AMPLITUDE = 0.1
@@ -146,6 +147,16 @@ class ImpactOscillator:
     def unit_speed(self) -> float:
         """2 pi f gap: the speed to which approach speeds compare [m/s]."""
         return self.driven.angular_frequency * self.stop.gap
+
+    @property
+    def local_restitution(self) -> float:
+        """The restitution of Newton's law at the stop [1]; TypeError for an oscillator with another law."""
+        law = self.stop.law
+        if not isinstance(law, NewtonRestitution):
+            raise InvalidType(
+                f"law of the stop is a {type(law).__name__}; it has no restitution, so give one"
+            )
+        return law.local_restitution
 
     def with_amplitude(self, amplitude: float) -> ImpactOscillator:
         """The same oscillator driven with another base amplitude [m].

@@ -173,7 +173,7 @@ def main() -> None:
     tree, table = args.out.resolve() / "tree", args.out / "planted.csv"
     ignore = shutil.ignore_patterns("__pycache__", ".*", "results")
     shutil.copytree(ROOT, tree, ignore=ignore, dirs_exist_ok=True)
-    subprocess.run([sys.executable, "-m", "contact.machine.warm_up"], cwd=tree, check=True)
+    subprocess.run([sys.executable, "-m", "contact.warm_up"], cwd=tree, check=True)
     kernels = set(tree.glob("contact/__pycache__/kernels-*"))
     done = {(row[0], row[1]): row for row in csv.reader(table.open())} if table.exists() else {}
     wanted, begun, missed = chosen(args.seed, args.places, args.only), time.monotonic(), []

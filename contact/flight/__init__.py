@@ -8,5 +8,5 @@
 `tip_search`          the tip during a flight: roots and peaks in a bracket, and all peaks
 `crossing`            the first crossing, certified
 `sampled_crossing`    the first crossing that the letter's samples detect
-`polynomial_root`     the first crossing of a polynomial
+`polynomial_root`     the first crossing of a polynomial; the positive roots of a quadratic
 """

@@ -1,8 +1,10 @@
-"""The first crossing of zero by a polynomial, such as a contact force or the root of a penetration.
+"""The first crossing of zero by a polynomial, such as a contact force, and the roots of a quadratic.
 
 The three proofs of ``contact.flight.bounds`` settle one stretch after the other.  The bound of the third
 derivative is the sum of the absolute terms at the far end.
 """
+
+import math
 
 from contact.flight.bounds import PEAK, ROOT, SKIP, certify
 from contact.flight.elementary import EPS
@@ -92,3 +94,13 @@ def polynomial_root(coefficients, sign, height, low, high):
             return new
         s = new
     return s
+
+
+def positive_roots(a: float, b: float, c: float) -> list[float]:
+    """The positive solutions of a X^2 + b X + c = 0, ascending."""
+    square = b * b - 4.0 * a * c
+    if square < 0.0:
+        return []
+    half = -0.5 * (b + math.copysign(math.sqrt(square), b))
+    found = ([half / a] if a != 0.0 else []) + ([c / half] if half != 0.0 else [])
+    return sorted(root for root in found if root > 0.0)

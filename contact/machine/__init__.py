@@ -3,5 +3,4 @@
 `compiled`       `kernel` compiles a function and keeps its machine code; `inlined` and `part` are compiled
                  into their callers
 `vector_loops`   sums over rows of numbers with the vector instructions of the processor
-`warm_up`        a program that compiles all kernels once: ``python -m contact.machine.warm_up``
 """

@@ -37,6 +37,10 @@ from numba.extending import intrinsic
 config: Any = numba_config
 
 PACKAGE = Path(__file__).parent.parent
+MODULES = {
+    ".".join((PACKAGE.name, *path.relative_to(PACKAGE).with_suffix("").parts)).removesuffix(".__init__"): path
+    for path in (*PACKAGE.glob("[!_]*.py"), *PACKAGE.glob("[!_]*/**/*.py"))
+}  # the files of ``contact``, but for its own __init__
 IMPORT = re.compile(r"^from (contact[\w.]*) import (\([^)]*\)|[^\n]*)", re.MULTILINE)
 
 UNUSED = 3600.0  # time without use [s] after which machine code is removed; an older process may need it
@@ -65,10 +69,8 @@ def _imports(path: Path) -> tuple[bytes, frozenset[Path]]:
     """The text of a file of ``contact``, and the files of ``contact`` that it imports."""
     text, found = path.read_bytes(), set[Path]()
     for module, names in IMPORT.findall(text.decode()):
-        start = PACKAGE.joinpath(*module.split(".")[1:])
-        for part in [start, *(start / name for name in re.findall(r"\w+", names))]:
-            if part != PACKAGE:
-                found |= {file for file in (part.with_suffix(".py"), part / "__init__.py") if file.is_file()}
+        parts = [module, *(f"{module}.{name}" for name in re.findall(r"\w+", names))]
+        found |= {MODULES[part] for part in parts if part in MODULES}
     return text, frozenset(found)
 
 

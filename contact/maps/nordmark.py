@@ -31,9 +31,9 @@ from typing import ClassVar, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from beam.parameters import Array, require, require_array, require_whole, require_within
+from beam.parameters import Array, require, require_array, require_kind, require_whole, require_within
 from contact.machine.compiled import kernel
-from contact.maps.nordmark_coefficients import coefficients, restitution_of
+from contact.maps.nordmark_coefficients import coefficients
 from contact.maps.protocol import Jacobians, StrobedOrbit, amplitude_factors
 from contact.oscillator import ImpactOscillator
 
@@ -161,7 +161,8 @@ class NordmarkMap:
         `restitution` is the effective one; left out, it is the `local_restitution` of the oscillator's law,
         and a law without one (a force law) raises TypeError.
         """
-        restitution = restitution_of(oscillator) if restitution is None else restitution
+        require_kind("oscillator", oscillator, ImpactOscillator, "an ImpactOscillator")
+        restitution = oscillator.local_restitution if restitution is None else restitution
         model, k = oscillator.model, oscillator.model.leading_mode
         return cls.from_mode(
             omega=float(model.omega[k]),
@@ -213,10 +214,6 @@ class NordmarkMap:
     def excess(self, rho: float) -> float:
         """The excess F/F_g - 1 [1] at `rho`."""
         return require_within("rho", rho, "[1]") / self.rho_per_excess
-
-    def step(self, state: ArrayLike, rho: float) -> Array:
-        """The state (x, y), shape (2,), one drive period later."""
-        return self.iterate(state, rho, 1)[0]
 
     def iterate(self, state: ArrayLike, rho: ArrayLike, count: int) -> Array:
         """The `count` states that follow `state`, shape (count, 2); row 0 is one period later.

@@ -23,11 +23,9 @@ Sources: letter of 1996, Eqs. (1) to (3); A. B. Nordmark, J. Sound Vib. 145 (199
 
 import math
 
-from beam.parameters import InvalidType, require, require_kind, require_within
+from beam.parameters import require, require_within
 from contact.flight.modal_flow import flow_matrix
 from contact.flight.motion import damped_frequency
-from contact.laws import NewtonRestitution
-from contact.oscillator import ImpactOscillator
 
 
 def coefficients(
@@ -50,11 +48,3 @@ def coefficients(
     )
     delay_term = delay / (2.0 * n12 * (1.0 + restitution) ** 2)
     return n11 + n22, math.exp(-decay_rate / drive_frequency), delay_term, math.floor(turns)
-
-
-def restitution_of(oscillator: ImpactOscillator) -> float:
-    """The `local_restitution` of an oscillator's contact law; TypeError if it has none."""
-    law = require_kind("oscillator", oscillator, ImpactOscillator, "an ImpactOscillator").stop.law
-    if not isinstance(law, NewtonRestitution):
-        raise InvalidType(f"law of the stop is a {type(law).__name__}; it has no restitution, so give one")
-    return law.local_restitution

@@ -32,6 +32,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beam.parameters import require_kind, require_whole, require_within
+from contact.flight.polynomial_root import positive_roots
 from contact.maps.nordmark import NordmarkMap
 
 MOST_PERIODS = 100_000  # longest period of an orbit, in drive periods; its states are computed one by one
@@ -159,19 +160,6 @@ class MapFamily:
             if orbit.stable and orbit.admissible:
                 return self.orbit(low).rho, self.orbit(high).rho if high < math.inf else math.inf
         return None
-
-
-def positive_roots(a: float, b: float, c: float) -> list[float]:
-    """The positive solutions of a X^2 + b X + c = 0, ascending."""
-    if a == 0.0:
-        found = [-c / b] if b != 0.0 else []
-    else:
-        square = b * b - 4.0 * a * c
-        if square < 0.0:
-            return []
-        half = -0.5 * (b + math.copysign(math.sqrt(square), b))
-        found = [half / a] + ([c / half] if half != 0.0 else [])
-    return sorted(root for root in found if root > 0.0)
 
 
 def maximal_period(nordmark: NordmarkMap) -> int:

@@ -3,27 +3,19 @@
 `families`      orbits of one period in one description: closed forms, kicks, and shooting with exact tangents
 `branches`      branches of orbits over the amplitude or along any path p -> oscillator, their folds, period
                 doublings, tori and grazings, and derivatives of all these with respect to parameters
+`shooting`      `Shooting`, the family under any law, with its folds and all its orbits at one amplitude
 `observation`   motions followed in time: settling, orbit diagrams, the loss of an orbit when the drive is
                 lowered, a compiled column of a chart, Lyapunov exponents, covariances under noise
 
 A parameter is a `Change`, a direction in which the numbers of the oscillator change.
 """
 
-from contact.orbits.branches.continuation import (
-    Branch,
-    first_event,
-    fold_along_frequency,
-    fold_of,
-    folds_of,
-    follow,
-    lowest_of,
-)
+from contact.orbits.branches.continuation import Branch, first_event, fold_along_frequency, fold_of, follow
 from contact.orbits.branches.events import Event
 from contact.orbits.branches.orbit_derivatives import OrbitDerivatives, excess_derivatives, orbit_derivatives
 from contact.orbits.branches.path import follow_path
 from contact.orbits.families.family import Family, Orbit
 from contact.orbits.families.kick import KickFamily
-from contact.orbits.families.shooting import PeriodicOrbit, Shooting
 from contact.orbits.families.single_impact import Kick, MaximalFamily, SingleImpactOrbit
 from contact.orbits.observation.amplitude_scan import AmplitudeScan, ScannedColumn
 from contact.orbits.observation.covariance import cloud, strobe_derivatives
@@ -32,6 +24,7 @@ from contact.orbits.observation.lyapunov import Exponents, map_exponents, orbit_
 from contact.orbits.observation.repetition import period_of
 from contact.orbits.observation.scan import OrbitDiagram, orbit_diagram
 from contact.orbits.observation.settling import Settled, born, born_period, settle
+from contact.orbits.shooting import PeriodicOrbit, Shooting
 from contact.sensitivity.change import Change
 from contact.sensitivity.motion import MotionDerivatives, motion_derivatives
 

@@ -28,8 +28,6 @@ from numpy.typing import ArrayLike
 from beam import Refusal
 from contact import ContactError
 from studies import letter
-from studies.physics.least_model import TRACE_EXCESS, least_modes
-from studies.physics.one_mode import doubts, with_restitution
 from studies.shell.columns import columns_of, csv_text, print_table
 from studies.shell.digits import numbers_in
 from studies.shell.executors import pool_of, progress, say
@@ -138,25 +136,16 @@ class Run:
                 self.failed(f"{unit}, {item}", error)
         return [found for found, _ in tried]
 
-    def choose_modes(
-        self,
-        scene: Scene,
-        needs: Mapping[str, float],
-        frequencies: Sequence[float] = (),
-        excess: float = TRACE_EXCESS,
-    ) -> Scene:
-        """The scene with the least number of modes for these quantities, unless it says the number."""
-        self.scene, self.model_choice = least_modes(scene, needs, frequencies, excess)
-        self.say(self.model_choice)
-        return self.scene
+    def adopt(self, scene: Scene, why: str) -> Scene:
+        """Go on with this scene, a change of the one before; prints `why`."""
+        self.scene = scene
+        self.say(why)
+        return scene
 
-    def describe_one_mode(self, scene: Scene) -> Scene:
-        """The scene with the restitution of Eq. (1) where it is open; prints it, and what is doubtful."""
-        self.scene, chosen = with_restitution(scene)
-        self.say(chosen)
-        for sentence in doubts(self.scene):
-            self.warn(sentence)
-        return self.scene
+    def choose_modes(self, scene: Scene, why: str) -> Scene:
+        """Go on with this scene, whose number of modes was chosen; keeps and prints `why`."""
+        self.model_choice = why
+        return self.adopt(scene, why)
 
     # what it leaves
 

@@ -31,6 +31,8 @@ from typing import Any, TextIO, cast
 
 from beam import SuspiciousValue
 from contact import ContactError
+from studies.physics.least_model import least_modes
+from studies.physics.one_mode import doubts, with_restitution
 from studies.shell import programs
 from studies.shell.executors import duration
 from studies.shell.files import SCHEMA
@@ -146,8 +148,11 @@ class Study:
             with warnings.catch_warnings():  # a study varies the scene on purpose; what the user gave is told
                 warnings.simplefilter("ignore", SuspiciousValue)
                 asked = self.at(run.scene, options) if self.at else ()
-                scene = run.choose_modes(run.scene, self.needs, *asked) if self.needs else run.scene
-                scene = run.describe_one_mode(scene)
+                if self.needs:
+                    run.choose_modes(*least_modes(run.scene, self.needs, *asked))
+                scene = run.adopt(*with_restitution(run.scene))
+                for sentence in doubts(scene):
+                    run.warn(sentence)
                 with _drawn_as(run.style):
                     results = self.function(scene, run, **options)
         except (KeyboardInterrupt, Exception) as error:

@@ -96,9 +96,8 @@ ORBITS = (
                   step=told(0.0, "step is 0.0 [1]"))),
     of(orbits.first_event, lambda c: dict(family=c.family, start=c.orbit, lowest=-0.5), over="family",
        kind=dict(family=None, start=0.1), value=dict(lowest=-1.5, start=each(P4, TWICE, FOREIGN))),
-    *(of(call, lambda c: dict(family=c.family), over="family", kind=dict(family=NO_FAMILY, near=0.1),
-         value=dict(near=P4))
-      for call in (orbits.fold_of, orbits.folds_of, orbits.lowest_of)),
+    of(orbits.fold_of, lambda c: dict(family=c.family), over="family", kind=dict(family=NO_FAMILY, near=0.1),
+       value=dict(near=P4)),
     of(orbits.fold_of, lambda c: dict(family=c.family, near=c.orbit), name="fold_of, near an orbit",
        over="family"),
     of(orbits.fold_along_frequency, lambda c: dict(family=c.family, frequencies=np.array([22.2])),

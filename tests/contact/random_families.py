@@ -274,9 +274,7 @@ def judged(
     low, at, high, speed = 0.9 * start.excess - 0.1, start.excess, start.excess + 0.1, start.speed
     calls: dict[str, Callable] = {
         "fold_of": lambda: [orbits.fold_of(family, start)],
-        "folds_of": lambda: [*orbits.folds_of(family, start)],
         "first_event": lambda: [orbits.first_event(family, start, -0.9)],
-        "lowest_of": lambda: [orbits.lowest_of(family, start)],
         "follow": lambda: orbits.follow(family, start, low=0.6 * speed, high=1.8 * speed),
         "path in amplitude": lambda: orbits.follow_path(by_excess, start, at, low=low, high=high),
         "path": lambda: orbits.follow_path(by_change, start, 0.0, low=-0.01, high=0.01),
@@ -310,7 +308,7 @@ def judged(
                 yield f"{name}: orbit", wrong_orbit(orbit)
 
 
-QUICK = ("fold_of", "folds_of", "first_event", "lowest_of", "follow")
+QUICK = ("fold_of", "first_event", "follow")
 ALL = (*QUICK, "path in amplitude", "path")
 
 

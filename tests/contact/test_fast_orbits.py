@@ -7,7 +7,8 @@ import pytest
 from oscillators import equation_1, modes_on_stop, newton, slow
 
 from contact import BranchEnded, ImpactOscillator, MaximalFamily, State, StroboscopicMap
-from contact.orbits import Shooting, fold_of, folds_of, lowest_of, orbit_end, settle
+from contact.orbits import Shooting, fold_of, orbit_end, settle
+from contact.orbits.branches.family_curve import whole_branch
 
 pytestmark = pytest.mark.filterwarnings("ignore::beam.SuspiciousValue")
 SWEEP = [
@@ -43,7 +44,7 @@ def test_no_fold_is_missed(cells: list[tuple[int, float, float]]) -> None:
         closed = MaximalFamily(oscillator=family.oscillator, period=period).fold()
         if closed is not None and closed.admissible:
             found, count = [fold_of(family)], count + 1
-            found += [*folds_of(family), lowest_of(family).orbit] if len(cells) < 9 else []
+            found += whole_branch(family, None)[2].of_kind("fold") if len(cells) < 9 else []
             assert [fold.excess for fold in found] == pytest.approx(len(found) * [closed.excess], abs=1e-11)
     assert count > 0.4 * len(cells)
 
@@ -72,6 +73,5 @@ def test_a_scan_tries_its_lowest_amplitude(w: float, start: float) -> None:
 
 def test_without_an_orbit_to_start_from_the_branch_has_ended() -> None:
     family = Shooting(oscillator=one_mode(1.2, 0.3, 0.8, 0.1), period=2, impacts=3)
-    for search in (fold_of, lowest_of):
-        with pytest.raises(BranchEnded, match="start from"):
-            search(family)
+    with pytest.raises(BranchEnded, match="start from"):
+        fold_of(family)

@@ -10,7 +10,8 @@ from oscillators import equation_1, modes_on_stop
 from simulated_orbit import EQUATION_1, LAWS, beam, on_stop, sizes, touches
 
 from contact import HuntCrossley, NotPeriodic, StroboscopicMap
-from contact.orbits import KickFamily, Shooting, fold_of, folds_of, follow, lowest_of, settle
+from contact.orbits import KickFamily, Shooting, fold_of, follow, settle
+from contact.orbits.branches.family_curve import whole_branch
 
 
 @pytest.mark.parametrize(("frequency", "period", "excess", "second", "digit"), EQUATION_1)
@@ -37,7 +38,8 @@ def test_where_contact_is_soft_a_branch_has_several_folds() -> None:
     and from any orbit; below them the branch goes on to the graze of a second touch."""
     oscillator = on_stop(folded_strip(12), 23.05, gap=FOLDED_GAP)
     family = Shooting(oscillator=oscillator, period=8)
-    upper, lower = folds_of(family)
+    whole = whole_branch(family, None)[2]
+    upper, lower = whole.of_kind("fold")
     assert (upper.excess, lower.excess) == pytest.approx((8.944e-6, 8.913e-6), rel=1e-3)
     assert 1.0 - lower.excess / upper.excess == pytest.approx(3.5e-3, rel=0.1)
     for orbit in (upper, lower):
@@ -55,7 +57,7 @@ def test_where_contact_is_soft_a_branch_has_several_folds() -> None:
         assert [orbit.excess for orbit in branch.of_kind("fold")] == pytest.approx(
             [upper.excess, lower.excess], abs=1e-14
         )
-    lowest = lowest_of(family)
+    lowest = min(whole.events, key=lambda event: event.orbit.excess)
     assert lowest.kind == "grazing" and lowest.orbit.excess == pytest.approx(1.309e-6, rel=1e-2)
     assert [touches(family.at_speed(lowest.orbit.speed * x, lowest.orbit)) for x in (1.001, 0.999)] == [1, 2]
 
@@ -65,11 +67,12 @@ def test_below_its_lowest_fold_a_branch_can_go_on_to_a_graze() -> None:
     on, stable, to 4.6e-7; there settled motions say so, too."""
     oscillator = on_stop(straight_leaf(20), 23.05, gap=FOLDED_GAP)
     family = Shooting(oscillator=oscillator, period=8)
-    upper, lower = folds_of(family)
+    whole = whole_branch(family, None)[2]
+    upper, lower = whole.of_kind("fold")
     assert upper.speed < lower.speed and lower.excess < upper.excess
     assert (upper.excess, lower.excess) == pytest.approx((2.987e-6, 1.174e-6), rel=1e-2)
     assert fold_of(family).excess == pytest.approx(lower.excess, abs=1e-14)
-    lowest = lowest_of(family)
+    lowest = min(whole.events, key=lambda event: event.orbit.excess)
     assert lowest.kind == "grazing" and lowest.orbit.excess == pytest.approx(4.63e-7, rel=1e-2)
     start = family.at_speed(1.02 * lowest.orbit.speed, lowest.orbit)
     assert start.stable and lowest.orbit.excess < start.excess < lower.excess
@@ -80,13 +83,6 @@ def test_below_its_lowest_fold_a_branch_can_go_on_to_a_graze() -> None:
             strobed.at(excess), start.strobe_state(), most_cycles=4000, tolerance=1e-3 * excess, prove=False
         )
         assert (run.period, run.impacts) == (8, impacts)
-
-
-def test_in_the_usual_case_the_lowest_orbit_is_the_fold() -> None:
-    family = Shooting(oscillator=beam(22.20, HERTZ), period=5)
-    fold, lowest = fold_of(family), lowest_of(family)
-    assert lowest.kind == "fold" and lowest.orbit.excess == fold.excess < -1e-4
-    assert min(orbit.excess for orbit in folds_of(family)) == pytest.approx(fold.excess, abs=1e-14)
 
 
 def test_the_slope_is_the_derivative_of_the_excess() -> None:

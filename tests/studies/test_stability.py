@@ -24,7 +24,6 @@ MODEL = ModalModel(
     phi=[8.0, 4.7, 3.6],
     participation=[0.1, 0.05, 0.03],
 )
-STILL = replace(MODEL, decay_rate=np.zeros(3))
 
 
 # what all families rest on

@@ -106,7 +106,7 @@ def fold_of(family: ContinuableFamily, near: PeriodicOrbit | None = None) -> Per
     Where contact is soft, at an excess of some 1e-5 and less, a branch can have several folds.  It can go on
     below the lowest of them until another touch grazes.  A fold below grazing is the orbit of smallest
     amplitude, since the soft stretch of the branch begins at excess 0 upwards.  Any other fold is looked for
-    on the whole branch (`folds_of`); `lowest_of` gives the orbit of smallest amplitude, fold or graze.
+    on the whole branch, as `follow` gives it.
 
     Parameters
     ----------
@@ -150,7 +150,13 @@ def _fold_of_these_touches(
     family: ContinuableFamily, near: PeriodicOrbit | None
 ) -> tuple[PeriodicOrbit | None, list[Event]]:
     """The result of `lowest_fold` with as many touches as the family has."""
-    fold = _fold_near(family, near)
+    _require(family, near)
+    fold: PeriodicOrbit | None = None
+    with suppress(ContactError):  # the search of the whole branch says why
+        guess = near or fold_of_the_kicks(family)
+        legs = downhill(family, family.at_speed(guess.speed, near)) if guess else ()
+        events = (event for leg, _ in legs for event in leg.events)
+        fold = next((event.point.orbit for event in events if event.kind == "fold"), None)
     if fold is not None and fold.excess < 0.0:
         return fold, []
     branch = whole_branch(family, near if fold is None else fold)[2]
@@ -163,35 +169,10 @@ def _fold_of_these_touches(
     return None, []
 
 
-def folds_of(family: ContinuableFamily, near: PeriodicOrbit | None = None) -> tuple[PeriodicOrbit, ...]:
-    """All folds of the branch, by rising approach velocity from 1e-6 to 100 times 2 pi f gap.
-
-    The branch is followed through `near`, or else through the first orbit found from the kick description;
-    BranchEnded is raised as in `fold_of`.  Between two steps a pair of folds is seen when the rate comes
-    near zero.
-    """
-    _require(family, near)
-    return tuple(sorted(whole_branch(family, near)[2].of_kind("fold"), key=lambda orbit: orbit.speed))
-
-
-def lowest_of(family: ContinuableFamily, near: PeriodicOrbit | None = None) -> Event | None:
-    """The admissible orbit of smallest amplitude: a "fold", or the "grazing" that ends the branch below it.
-
-    Parameters and errors are the same as in `fold_of`.  None is returned if the branch has no such orbit, as
-    where the amplitude rises all along it from grazing on.
-    """
-    fold = _fold_near(family, near)
-    if fold is not None and fold.excess < 0.0 and fold.admissible:
-        return Event(kind="fold", orbit=fold)
-    events = whole_branch(family, near if fold is None else fold)[2].events
-    ends = [event for event in events if event.kind in ("fold", "grazing") and event.orbit.admissible]
-    return min(ends, key=lambda event: event.orbit.excess, default=None)
-
-
 def orbits_at(family: ContinuableFamily, excess: float) -> tuple[PeriodicOrbit, ...]:
-    """The orbits at F/F_g - 1 = `excess` on the branch of `folds_of`, by rising approach velocity.
+    """The orbits at F/F_g - 1 = `excess` on the whole branch, by rising approach velocity.
 
-    BranchEnded is raised as there, and if another orbit lies beyond the bounds of the speed.
+    BranchEnded is raised as in `fold_of`, and if another orbit lies beyond the bounds of the speed.
     """
     require_within("excess", excess, "[1]", above=-1)
     _require(family)
@@ -214,18 +195,6 @@ def orbits_at(family: ContinuableFamily, excess: float) -> tuple[PeriodicOrbit, 
 def fold_of_the_kicks(family: ContinuableFamily) -> SingleImpactOrbit | None:
     """The fold of the kick description at any speed of the search, the usual ones first."""
     return family.kicks.fold() or family.kicks.fold((SPEEDS[1] / 2.0, GREATEST_SPEED))
-
-
-def _fold_near(family: ContinuableFamily, near: PeriodicOrbit | None) -> PeriodicOrbit | None:
-    """The first fold downhill from `near`, or from the fold of the kick description; None if none is met."""
-    _require(family, near)
-    with suppress(ContactError):  # the search of the whole branch says why
-        guess = near or fold_of_the_kicks(family)
-        legs = downhill(family, family.at_speed(guess.speed, near)) if guess else ()
-        return next(
-            (event.point.orbit for leg, _ in legs for event in leg.events if event.kind == "fold"), None
-        )
-    return None
 
 
 def fold_along_frequency(

@@ -5,5 +5,4 @@
 `kick`                one collision of any law as a kick of all modes, by linear algebra
 `equations`           its equations F(z, p) = 0, their derivatives, and Newton's method
 `continuable_family`  families of which each orbit leads to its neighbours
-`shooting`            the family under any law, with its folds and all its orbits at one amplitude
 """

@@ -6,7 +6,7 @@ fold, where a node and a saddle meet.  Four descriptions offer it:
 
     ``single_impact.MaximalFamily``      Newton's law, several modes, closed form
     ``kick.KickFamily``                  any law, the collision as a kick of all modes
-    ``shooting.Shooting``                any law, any number of touches, Newton's method on exact tangents
+    ``contact.orbits.shooting.Shooting`` any law, any number of touches, Newton's method on exact tangents
     ``nordmark_orbits.MapFamily``        the Nordmark map (``contact.maps``), closed form; its "speed" is
                                          sqrt(x) at the impact
 """

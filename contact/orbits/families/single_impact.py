@@ -41,9 +41,8 @@ from numpy.typing import NDArray
 
 from beam.parameters import Array, InvalidValue, require, require_kind, require_whole, require_within
 from contact.flight.modal_flow import free_flow
+from contact.flight.polynomial_root import positive_roots
 from contact.laws import NewtonRestitution
-from contact.maps.nordmark_coefficients import restitution_of
-from contact.maps.nordmark_orbits import positive_roots
 from contact.orbits.families.family import CLOSING, Release, TouchOrbit
 from contact.oscillator import ImpactOscillator
 from contact.sensitivity.touch_flow import flow_over_periods
@@ -204,8 +203,7 @@ class MaximalFamily(SingleImpactFamily):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        restitution_of(self.oscillator)
-        _ = self.coefficients  # every mode that is kicked comes to rest
+        _ = self.oscillator.local_restitution, self.coefficients  # each mode that is kicked comes to rest
 
     @classmethod
     def from_oscillator(

@@ -27,9 +27,9 @@ from contact.maps.protocol import require_map
 from contact.maps.stroboscope import StrobedMap, StroboscopicMap
 from contact.orbits.branches.continuation import first_event, fold_of_the_kicks
 from contact.orbits.families.family import Family, PeriodicOrbit
-from contact.orbits.families.shooting import Shooting
 from contact.orbits.families.single_impact import MaximalFamily
 from contact.orbits.observation.settling import Settled, orbit_near, settle
+from contact.orbits.shooting import Shooting
 
 S = TypeVar("S")
 

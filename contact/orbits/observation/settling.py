@@ -8,7 +8,7 @@ gets period 0: chaos, a longer period, or a transient that is not over.  Any str
 
 **Proof.** A transient of an impact oscillator ends as soon as its orbit is known.  A motion that seems to
 repeat to a part in a thousand is compared with a periodic orbit, found from it by shooting
-(``contact.orbits.families.shooting``).  That orbit must be stable, and touch the stop only where it should
+(``contact.orbits.shooting``).  That orbit must be stable, and touch the stop only where it should
 (certified).  If the motion then comes closer to it over a whole block as its largest multiplier predicts,
 
     distance(n + block) <= SLACK |mu|^(block/m) distance(n) + rounding,
@@ -28,8 +28,8 @@ from contact.errors import ContactError
 from contact.maps.protocol import require_map
 from contact.maps.stroboscope import StrobedMap, StrobedOrbit, StroboscopicMap
 from contact.orbits.families.family import PeriodicOrbit
-from contact.orbits.families.shooting import Shooting
 from contact.orbits.observation.repetition import free_for_good, period_of
+from contact.orbits.shooting import Shooting
 from contact.trajectory import State, deviations
 
 S = TypeVar("S")

@@ -46,6 +46,7 @@ from studies.experiment.chart.model import (
     side_by_side,
 )
 from studies.physics.descriptions import TITLES, strobed_at
+from studies.physics.least_model import least_modes
 from studies.shell.digits import written
 from studies.shell.options import HERTZ, MOST_CELLS, Within
 from studies.shell.scene import (
@@ -95,13 +96,13 @@ def chart(
 ) -> Mapping[str, object]:
     """Compute, store and draw."""
     f = corresponding(harmonic(scene), letter.TIME_TRACE_HZ) if cut_hz is None else cut_hz
-    with_modes = run.choose_modes(scene, CUT_NEEDS)
+    with_modes = run.choose_modes(*least_modes(scene, CUT_NEEDS))
     columns, rows = points or (QUICK_POINTS if run.quick else POINTS)[model]
     low, high = (corresponding(harmonic(scene), f) for f in FREQUENCIES_HZ)
     plane = Plane(columns=columns, rows=rows, frequencies_hz=(low, high))
     bound = QUICK_CYCLES if run.quick else CYCLES[model]
     if model == "beam":
-        scene = run.choose_modes(scene, NEEDS)
+        scene = run.choose_modes(*least_modes(scene, NEEDS))
     oscillator = (beam_at if model == "beam" else single_mode_at)(scene, 0.5 * (low + high))
     scan = AmplitudeScan(oscillator=oscillator, most_cycles=bound)
     settings = {"model": model, "plane": plane, "knee": KNEE, "most_cycles": bound, "scene": scene.values()}

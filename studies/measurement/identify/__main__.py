@@ -65,6 +65,7 @@ from studies.measurement.identify.records import Kind, NoAnswer, Record, read_re
 from studies.measurement.identify.result import Fit
 from studies.measurement.next_measurement.figure import tabulated
 from studies.measurement.next_measurement.model import EXCESSES, FREQUENCIES_HZ, THIN, Measurement, Plan
+from studies.physics.least_model import least_modes
 from studies.physics.parameters import (
     Description,
     described,
@@ -159,7 +160,7 @@ def identify(
     if "amplitude" in wanted:
         raise InvalidValue("next names amplitude, which is measured with each orbit; name another parameter")
     if description == "beam":
-        scene = run.choose_modes(scene, {"fold": 0.05})
+        scene = run.choose_modes(*least_modes(scene, {"fold": 0.05}))
     if record is not None:
         read = read_record(record)
         if drive is not None:

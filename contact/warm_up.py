@@ -1,4 +1,4 @@
-"""`python -m contact.machine.warm_up`: compile all kernels once, so that the first study starts at once.
+"""`python -m contact.warm_up`: compile all kernels once, so that the first study starts at once.
 
 The machine code is kept (``contact.machine.compiled``).  Otherwise the first run of a study takes half a
 minute longer than the next.  Two processes share the work: kernels of a motion, and kernels of an orbit.
@@ -11,7 +11,7 @@ from beam import single_mode
 from contact.drive import HarmonicDrive
 from contact.laws import ContactLaw, HertzContact, NewtonRestitution
 from contact.maps.stroboscope import StroboscopicMap
-from contact.orbits.families.shooting import Shooting
+from contact.orbits.shooting import Shooting
 from contact.oscillator import ImpactOscillator
 from contact.stop import Stop
 
