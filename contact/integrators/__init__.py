@@ -33,20 +33,6 @@ from contact.integrators.nonsmooth_generalised_alpha import NonsmoothGeneralised
 from contact.integrators.splitting import Splitting
 from contact.trajectory import Run
 
-__all__ = [
-    "EXACT_NAMES",
-    "INTEGRATORS",
-    "CentralDifference",
-    "Exact",
-    "GeneralisedAlpha",
-    "Integrator",
-    "MoreauJean",
-    "NonsmoothGeneralisedAlpha",
-    "Run",
-    "SampledFlight",
-    "Splitting",
-]
-
 STEPPED = (Splitting, CentralDifference, GeneralisedAlpha, MoreauJean, NonsmoothGeneralisedAlpha)
 
 INTEGRATORS: dict[str, type[Integrator]] = {
@@ -54,3 +40,11 @@ INTEGRATORS: dict[str, type[Integrator]] = {
     **{method.name: method for method in (Exact, SampledFlight, *STEPPED)},
 }
 """Every method of the package by its name."""
+
+__all__ = [
+    "EXACT_NAMES",
+    "INTEGRATORS",
+    "Integrator",
+    "Run",
+    *sorted({kind.__name__ for kind in INTEGRATORS.values()}),
+]

@@ -35,7 +35,6 @@ from contact.integrators.grid import (
     force_in_flight,
     tip_of,
 )
-from contact.laws import HERTZ, LINEAR
 from contact.machine.compiled import kernel
 
 
@@ -57,7 +56,7 @@ def central_difference(grid, numbers):
                 c = 0.5 * h * motion.modes[DECAY, k]
                 new = (new + c * old) / (1.0 + c)
             half[k], v[k] = new, 0.5 * (old + new)
-        status = end_contact_step(grid, depth)
+        status = end_contact_step(grid, None, 1, depth, depth < 0.0, None)
         if status != DONE:
             return status
     return DONE
@@ -70,7 +69,6 @@ class CentralDifference(FixedStep):
     lagged: bool = False
     name: ClassVar[str] = "central-difference"
     order: ClassVar[float] = 2.0
-    laws: ClassVar[tuple[int, ...]] = (LINEAR, HERTZ)
     time_loop: ClassVar[Callable[..., int]] = staticmethod(central_difference)
 
     def critical_stiffness(self, motion: Motion) -> float:

@@ -12,11 +12,9 @@ from contact.engine.recorder import Recorder, grown, recorder_for, trajectory_of
 from contact.errors import Diverged, StepTooLarge
 from contact.flight.modal_flow import steady_motion
 from contact.flight.motion import Motion
-from contact.integrators.grid import DIVERGED, DONE, FULL, PROGRESS, Grid
-from contact.integrators.method import Integrator
-from contact.laws import LINEAR
+from contact.integrators.grid import DIVERGED, DONE, FULL, PROGRESS, Grid, first_tangent
+from contact.integrators.method import FORCE_LAWS, Integrator
 from contact.oscillator import ImpactOscillator
-from contact.touch import TOUCHES
 from contact.touch.passage import open_touch
 from contact.trajectory import CONTACT, OUTSIDE, UNDER_WAY, Run, State, Trajectory
 
@@ -35,15 +33,16 @@ def stiffness_at(motion: Motion, square: float | np.ndarray) -> float:
 def _refuse(motion: Motion, run: Run, step: float, critical: float, where: dict[str, float]) -> None:
     """ValueError for a start behind the stop, StepTooLarge for a step that cannot be stable."""
     within = step * motion.most_at_tip(run.start.velocity) + 1e-12 * max(motion.gap, 1e-6)
-    if CONTACT not in TOUCHES[motion.law].REGIMES and -where["gap"] > within:
+    if motion.law not in FORCE_LAWS and -where["gap"] > within:
         raise InvalidValue(
             f"displacement of the state puts the tip {-where['gap']:.3g} m behind the stop; with an impact "
             "law it must start on the near side"
         )
-    stiff = motion.number0 if motion.law == LINEAR else 0.0
-    if critical <= 0.0 or stiff > critical:
-        bears = "it is unstable even in flight" if critical <= 0.0 else f"it bears {critical:.4g} N/m"
-        detail = f"step {step:.4g} s, contact stiffness {stiff:.4g} N/m: {bears}"
+    stiff, _damping = first_tangent(motion)
+    if critical <= 0.0:
+        raise StepTooLarge(**where, detail=f"step {step:.4g} s: it is unstable even in flight")  # type: ignore[arg-type]
+    if stiff > critical:
+        detail = f"step {step:.4g} s, contact stiffness {stiff:.4g} N/m: it bears {critical:.4g} N/m"
         raise StepTooLarge(**where, detail=detail)  # type: ignore[arg-type]
 
 
@@ -88,6 +87,9 @@ class FixedStep(Integrator):
 
     Attributes
     ----------
+    laws : tuple of int
+        All laws with a force, by their `force` and `stiffness` in ``contact.touch``; a method by percussions
+        is for Newton's law.
     time_loop : compiled function
         time_loop(grid, prepared) -> status: the method's steps, from grid point progress[0].step to `steps`.
     deviations : bool
@@ -96,6 +98,7 @@ class FixedStep(Integrator):
 
     step: float
     beyond_limit: bool = False
+    laws: ClassVar[tuple[int, ...]] = FORCE_LAWS
     time_loop: ClassVar[Callable[..., int]]
     deviations: ClassVar[bool] = False
 
@@ -114,7 +117,7 @@ class FixedStep(Integrator):
         StepTooLarge and Diverged.
         """
         n, period, start, motion = oscillator.n_modes, oscillator.period, run.start, oscillator.motion()
-        step, forced = float(self.step), CONTACT in TOUCHES[motion.law].REGIMES
+        step, forced = float(self.step), motion.law in FORCE_LAWS
 
         def steady(clock: float) -> np.ndarray:
             """The part of (q, v) that the method does not carry, shape (2, n_modes)."""

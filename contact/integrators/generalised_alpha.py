@@ -11,6 +11,8 @@ alpha_m = alpha_f = 0 gives N. M. Newmark's method (J. Eng. Mech. Div. ASCE 85 (
 method of H. M. Hilber, T. J. R. Hughes and R. L. Taylor (Earthq. Eng. Struct. Dyn. 5 (1977) 283).  The
 acceleration a is carried from step to step and starts as f_0.
 
+A method with percussions may put a weight eta in place of the 1/2 in the positions (``moreau_jean``).
+
 The step.  The modes are coupled by N alone.  With D = 1 - alpha_m + (1 - alpha_f)(c gamma h + omega^2 beta
 h^2) per mode, and d*, d'* the end of the step without the contact force there, the tip has
 
@@ -25,15 +27,16 @@ Order 2 if gamma = 1/2 - alpha_m + alpha_f, else 1.
 Stability.  A step multiplies the free motions of a mode q'' + c q' + omega^2 q = 0 by the roots z of
 
     (z - 1)^2 (alpha_m + (1 - alpha_m) z) + (alpha_f + (1 - alpha_f) z) [ c h (1 - gamma + gamma z)(z - 1)
-        + y (beta z^2 + (1/2 + gamma - 2 beta) z + 1/2 - gamma + beta) ] = 0,   y = h^2 omega^2
+        + y (beta z^2 + (eta + gamma - 2 beta) z + 1 - eta - gamma + beta) ] = 0,   y = h^2 omega^2
 
 (from the equations above with q, v, a ~ z^n).  With z = (1 + s)/(1 - s), A = 1 - 2 alpha_m, F = 1 - 2
-alpha_f, g = 2 gamma - 1, b = 4 beta - 2 gamma and X = 2 c h this is p3 s^3 + p2 s^2 + p1 s + y = 0,
+alpha_f, g = 2 gamma - 1, e = g + 2 eta - 1, b = 4 beta - 2 gamma - 2 eta + 1 and X = 2 c h this is
+p3 s^3 + p2 s^2 + p1 s + y = 0,
 
-    p3 = 4 A + F (b y + X g),   p2 = 4 + b y + X g + F (g y + X),   p1 = (g + F) y + X,
+    p3 = 4 A + F (b y + X g),   p2 = 4 + b y + X g + F (e y + X),   p1 = (e + F) y + X,
 
-stable if none is below zero and p2 p1 >= p3 y (Routh and Hurwitz).  Without damping all four conditions are
-linear in y,
+stable if none is below zero and p2 p1 >= p3 y (Routh and Hurwitz).  For eta = 1/2, e = g.  Without damping
+all four conditions are then linear in y,
 
     4 A + F b y,   4 + (b + F g) y,   (g + F) y,   4 (g + F - A) + g (b + F g + F^2) y   >= 0,
 
@@ -58,6 +61,7 @@ from contact.flight.motion import Motion
 from contact.integrators.fixed_step import FixedStep, stiffness_at
 from contact.integrators.grid import (
     DONE,
+    LEAST_DEPTH,
     Grid,
     accelerations,
     contact_force,
@@ -66,7 +70,6 @@ from contact.integrators.grid import (
     force_in_flight,
     tip_of,
 )
-from contact.laws import HERTZ, LINEAR
 from contact.machine.compiled import inlined, kernel
 
 MARGIN = 1e-12  # slack of the conditions of stability, relative to their terms, which cancel on the limit
@@ -75,10 +78,12 @@ ROUNDING = 16 * 2.220446049250313e-16
 """Relative change of the contact force at which the iteration ends: d* carries a rounding error of its own,
 which moves the root by a few units in the last place."""
 
+CLOSED = 1e-12  # relative width of a bracket in which rounding decides over the sign of the residual
+
 ITERATIONS = 130
-"""Enough for the force.  Where the stop pushes, the residual is concave up to the root and Newton's steps
-from zero never pass it; each cuts d (in a power of at most 5/2) to 3/5 or less until it converges
-quadratically: 75 such steps span the digits of a double.  Where Hunt and Crossley's law pulls, each step
+"""Enough for the force.  Where the stop pushes with a power of d above one, the residual is concave up to the
+root, and Newton's steps from zero never pass it; each cuts the residual to 1/e or less until they converge
+quadratically.  Under any other law a step that leaves the bracket halves it.  Where the stop pulls, each step
 halves the bracket or the residual: 130 for the digits of both."""
 
 
@@ -89,65 +94,61 @@ class AlphaNumbers(NamedTuple):
     alpha_f: float
     beta: float
     gamma: float
+    eta: float = 0.5
 
-    def letters(self) -> tuple[float, float, float, float]:
-        """A, F, g, b."""
-        alpha_m, alpha_f, beta, gamma = self
-        return 1.0 - 2.0 * alpha_m, 1.0 - 2.0 * alpha_f, 2.0 * gamma - 1.0, 4.0 * beta - 2.0 * gamma
+    def letters(self) -> tuple[float, float, float, float, float]:
+        """A, F, g, b and e."""
+        alpha_m, alpha_f, beta, gamma, eta = self
+        g, late = 2.0 * gamma - 1.0, 2.0 * eta - 1.0
+        return 1.0 - 2.0 * alpha_m, 1.0 - 2.0 * alpha_f, g, 4.0 * beta - 2.0 * gamma - late, g + late
 
 
 def limit(numbers: AlphaNumbers) -> float:
-    """Largest stable h omega without damping [1]; infinite if all are stable, 0 if none is."""
-    a, f, g, b = numbers.letters()
-    largest = math.inf
-    for constant, slope in (
-        (4.0 * a, f * b),
-        (4.0, b + f * g),
-        (0.0, g + f),
-        (4.0 * (g + f - a), g * (b + f * g + f * f)),
-    ):
-        if constant < -MARGIN or (constant < MARGIN and slope < -MARGIN):
-            return 0.0
-        if slope < -MARGIN:
-            largest = min(largest, -constant / slope)
-    return math.sqrt(largest)
+    """Largest stable h omega without damping for eta = 1/2 [1]; infinite if all are stable, 0 if none is."""
+    a, f, g, b, _e = numbers.letters()
+    constant = np.array([4.0 * a, 4.0, 0.0, 4.0 * (g + f - a)])
+    slope = np.array([f * b, b + f * g, g + f, g * (b + f * g + f * f)])
+    falls = slope < -MARGIN
+    if np.any((constant < -MARGIN) | (falls & (constant < MARGIN))):
+        return 0.0
+    return math.sqrt(np.min(-constant[falls] / slope[falls], initial=math.inf))
 
 
 def stable(numbers: AlphaNumbers, size: np.ndarray, decay: np.ndarray) -> np.ndarray:
     """Whether a mode with h omega = `size` and h c = `decay` does not grow, elementwise."""
-    a, f, g, b = numbers.letters()
+    a, f, g, b, e = numbers.letters()
     y, x = size**2, 2.0 * decay
-    p3, p2, p1 = 4.0 * a + f * (b * y + x * g), 4.0 + b * y + x * g + f * (g * y + x), (g + f) * y + x
-    scale = MARGIN * (4.0 + y + x) * (1.0 + abs(b) + abs(g) + abs(f))
+    p3, p2, p1 = 4.0 * a + f * (b * y + x * g), 4.0 + b * y + x * g + f * (e * y + x), (e + f) * y + x
+    scale = MARGIN * (4.0 + y + x) * (1.0 + abs(b) + abs(e) + abs(f))
     least = np.minimum(np.minimum(p3, p2), p1)
     return np.asarray((least >= -scale) & (p2 * p1 - p3 * y >= -scale * (y + x)))
 
 
 @kernel
 def force_at_end(motion, depth, rate, b, g):
-    """The contact force N with N = N(depth - b N, rate - g N), and how often the law was evaluated."""
+    """The contact force N with N = N(depth - b N, rate - g N), for a law that pulls only while the tip
+    leaves: the pull is then weaker than rate/g, which would stop the tip."""
     start = contact_force(motion, depth, rate)
     if start == 0.0:
-        return 0.0, 1
-    low, high = 0.0, start
-    if start < 0.0:
-        low, high = (rate + 1.0 / motion.number1) / g, 0.0
-    elif b > 0.0:
-        high = min(high, depth / b)
+        return 0.0
+    low, high = (0.0, start) if start > 0.0 else (rate / g, 0.0)
+    if b * start > depth:
+        high = depth / b
     force, before = 0.0, math.inf
-    for i in range(ITERATIONS):
+    for _ in range(ITERATIONS):
         residual = force - contact_force(motion, depth - b * force, rate - g * force)
         low, high = (low, force) if residual > 0.0 else (force, high)
         stiffness, damping = contact_tangent(motion, depth - b * force, rate - g * force)
         new = force - residual / (1.0 + b * stiffness + g * damping)
         if start > 0.0 and new >= high:
-            return high, i + 1
-        if start < 0.0 and (not low < new < high or abs(residual) > 0.5 * before):
+            if high - low <= CLOSED * high or contact_force(motion, LEAST_DEPTH, rate - g * high) >= high:
+                return high
+        if not low <= new <= high or (start < 0.0 and abs(residual) > 0.5 * before):
             new = 0.5 * (low + high)
         if abs(new - force) <= ROUNDING * abs(new):
-            return new, i + 1
+            return new
         force, before = new, abs(residual)
-    return force, ITERATIONS
+    return force
 
 
 class AlphaState(NamedTuple):
@@ -161,18 +162,18 @@ class AlphaState(NamedTuple):
 
 def alpha_state(numbers: AlphaNumbers, grid: Grid) -> AlphaState:
     """The state of the method before its first step, where a = f."""
-    (alpha_m, alpha_f, beta, gamma), h, start = numbers, grid.step, accelerations(grid)
+    (alpha_m, alpha_f, beta, gamma, _eta), h, start = numbers, grid.step, accelerations(grid)
     implicit = gamma * (h * grid.motion.decay) + beta * (h * grid.motion.omega) ** 2
     return AlphaState(numbers, start, start.copy(), 1.0 - alpha_m + (1.0 - alpha_f) * implicit)
 
 
 @inlined
-def predict(grid, alpha, eta, sine):
-    """The step without a contact force at its end; `eta` is the 1/2 of the positions, `sine` is sin(w t)."""
+def predict(grid, alpha, sine):
+    """The step without a contact force at its end; `sine` is sin(w t)."""
     numbers, a, f, inertia = alpha
     h, q, v, new = grid.step, grid.q, grid.v, 1.0 - numbers.alpha_f
     for k in range(q.size):
-        q[k] += h * v[k] + h * h * (eta - numbers.beta) * a[k]
+        q[k] += h * v[k] + h * h * (numbers.eta - numbers.beta) * a[k]
         v[k] += h * (1.0 - numbers.gamma) * a[k]
         rest = numbers.alpha_f * f[k] - numbers.alpha_m * a[k]
         a[k] = (rest + new * force_in_flight(grid, k, sine, q, v)) / inertia[k]
@@ -189,16 +190,17 @@ def generalised_alpha(grid, prepared):
     new, b, g = 1.0 - numbers.alpha_f, numbers.beta * h * h, numbers.gamma * h
     while progress.step < grid.steps:
         sine = math.sin(motion.drive * (grid.clock + (progress.step + 1) * h))
-        predict(grid, alpha, 0.5, sine)
+        predict(grid, alpha, sine)
         depth, rate = tip_of(motion, q, v)
-        push, _used = force_at_end(motion, depth, rate, b * new * mobility, g * new * mobility)
+        push = force_at_end(motion, depth, rate, b * new * mobility, g * new * mobility)
         for k in range(q.size):
             jump = new * push_on(motion, k, push) / inertia[k]
             a[k] += jump
             q[k] += b * jump
             v[k] += g * jump
             f[k] = force_in_flight(grid, k, sine, q, v) + push_on(motion, k, push)
-        status = end_contact_step(grid, tip_of(motion, q, v)[0])
+        depth, _rate = tip_of(motion, q, v)
+        status = end_contact_step(grid, None, 1, depth, depth < 0.0, None)
         if status != DONE:
             return status
     return DONE
@@ -233,7 +235,6 @@ class GeneralisedAlpha(FixedStep):
     alpha_f: float = 0.0
     name: ClassVar[str] = "generalised-alpha"
     order: ClassVar[float] = 2.0
-    laws: ClassVar[tuple[int, ...]] = (LINEAR, HERTZ)
     time_loop: ClassVar[Callable[..., int]] = staticmethod(generalised_alpha)
 
     def __post_init__(self) -> None:
@@ -265,11 +266,14 @@ class GeneralisedAlpha(FixedStep):
     @staticmethod
     def with_dissipation(*, step: float, rho: float, beyond_limit: bool = False) -> GeneralisedAlpha:
         """Chung and Hulbert's choice; a step damps infinite frequencies by the factor `rho`, from 0 to 1."""
-        return GeneralisedAlpha(step=step, beyond_limit=beyond_limit, **chung_hulbert(rho)._asdict())
+        alpha_m, alpha_f, beta, gamma, _eta = chung_hulbert(rho)
+        return GeneralisedAlpha(
+            step=step, beta=beta, gamma=gamma, alpha_m=alpha_m, alpha_f=alpha_f, beyond_limit=beyond_limit
+        )
 
     @property
     def numbers(self) -> AlphaNumbers:
-        """alpha_m, alpha_f, beta and gamma."""
+        """alpha_m, alpha_f, beta and gamma, with eta = 1/2."""
         return AlphaNumbers(self.alpha_m, self.alpha_f, self.beta, self.gamma)
 
     def critical_stiffness(self, motion: Motion) -> float:

@@ -36,6 +36,7 @@ PROGRESS = np.dtype([("step", "i8"), ("due", "f8")])
 
 UNBOUNDED = 1e12  # penetration [m] beyond which a motion counts as diverged
 ON_THE_GRID = 1e-9  # part of a step by which a time may miss a grid point and be taken for it
+LEAST_DEPTH = float(np.finfo(float).tiny)  # penetration in place of d = 0, where the stop does not act [m]
 WELL_WITHIN = 1e-12  # part of a step to which a touch is dated: rounding moves the root by as much
 
 
@@ -85,6 +86,12 @@ def contact_tangent(motion, depth, rate):
     if depth <= 0.0:
         return 0.0, 0.0
     return touch.stiffness(motion, depth, rate)
+
+
+@kernel
+def first_tangent(motion):
+    """dN/dd [N/m] and dN/dd' [N s/m] at the first touch, of a tip at rest; zero for impact laws."""
+    return contact_tangent(motion, LEAST_DEPTH, 0.0)
 
 
 @kernel
@@ -229,10 +236,4 @@ def _write_contact(grid, method, span, depth, _report):
     _write_on_cubic(grid, method, span, depth, (d0, 0.5 * span[1] * power, False))
 
 
-_end_contact_step = make_end_of_step(cubic_interpolation, _write_contact)
-
-
-@part
-def end_contact_step(grid, depth):
-    """The end of a step under a force law with the cubic interpolation."""
-    return _end_contact_step(grid, None, 1, depth, depth < 0.0, None)
+end_contact_step = make_end_of_step(cubic_interpolation, _write_contact)

@@ -12,9 +12,11 @@ from typing import ClassVar
 from contact.flight.motion import Motion
 from contact.oscillator import ImpactOscillator
 from contact.touch import TOUCHES
-from contact.trajectory import Run, Trajectory
+from contact.trajectory import CONTACT, Run, Trajectory
 
 LAW_NAMES = {code: file.LAW for code, file in TOUCHES.items()}  # the laws in words, by their codes
+FORCE_LAWS = tuple(code for code, file in TOUCHES.items() if CONTACT in file.REGIMES)
+"""Codes of the laws whose stop pushes with a force; the others are impact laws."""
 
 
 class Integrator:

@@ -18,7 +18,7 @@ theta^2, but for a weight eta = theta in place of the 1/2 in its positions.  Bot
     q_{n+1} = q_n + h v_n + h^2 ((eta - beta) a_n + beta a_{n+1}) + h eta w,     w = -phi p.
 
 Order: an impact is late or early by a fraction of a step, so 1 after an impact; before one, 2 for theta = 1/2
-and 1 otherwise.  Stability: a mode q'' + c q' + omega^2 q = 0 with eigenvalues lambda does not grow if
+and 1 otherwise.  Stability: ``generalised_alpha``.  A mode with eigenvalues lambda does not grow if
 2 Re(lambda) + h |lambda|^2 (1 - 2 theta) <= 0, i.e. always for theta >= 1/2.
 
 Energy (V. Acary, Z. Angew. Math. Mech. 96 (2016) 585): without damping and drive
@@ -49,7 +49,7 @@ from beam.parameters import require_within
 from contact.flight.modal_flow import push_on
 from contact.flight.motion import DECAY, SQUARE, Motion
 from contact.integrators.fixed_step import FixedStep
-from contact.integrators.generalised_alpha import AlphaNumbers, AlphaState, alpha_state, predict
+from contact.integrators.generalised_alpha import AlphaNumbers, AlphaState, alpha_state, predict, stable
 from contact.integrators.grid import (
     DONE,
     Grid,
@@ -62,19 +62,6 @@ from contact.laws import NEWTON
 from contact.machine.compiled import inlined, kernel
 from contact.touch.passage import add_loss, close_touch, open_touch
 from contact.trajectory import IMPACT
-
-MARGIN = 1e-12  # slack of the test for stability, relative to its two terms, which cancel on the limit
-
-
-@kernel
-def percussion_of(motion, h, depth, before, after, mobility):
-    """Percussion p of the stop [N s] in a step from penetration `depth` and tip velocity `before`.
-
-    Without it the step would end with tip velocity `after`; a unit of it takes the velocity `mobility` away.
-    """
-    if depth + 0.5 * h * before < 0.0:
-        return 0.0
-    return max(0.0, (after + motion.number0 * before) / mobility)
 
 
 @inlined
@@ -113,27 +100,28 @@ def write_percussion(grid, corner, span, _depth, push):
 end_step = make_end_of_step(path_with_corner, write_percussion)
 
 
-def before_percussions(numbers: AlphaNumbers, eta: float, grid: Grid) -> tuple[AlphaState, float, float]:
-    """The state before the first step, eta [1], and sum E phi^2 [1/kg] (``nonsmooth_generalised_alpha``)."""
+def before_percussions(numbers: AlphaNumbers, grid: Grid) -> tuple[AlphaState, float]:
+    """The state before the first step, and sum E phi^2 [1/kg] (``nonsmooth_generalised_alpha``)."""
     alpha, y = alpha_state(numbers, grid), grid.step**2 * grid.motion.row(SQUARE)
-    alpha_m, alpha_f, beta, gamma = numbers
+    alpha_m, alpha_f, beta, gamma, eta = numbers
     share = 1.0 - alpha_m + (1.0 - alpha_f) * (beta - gamma * eta) * y
-    return alpha, float(eta), grid.motion.mobility(alpha.inertia / share)
+    return alpha, grid.motion.mobility(alpha.inertia / share)
 
 
 @kernel
 def through_percussions(grid, prepared):
     """Steps from the grid point reached, with `prepared` by `before_percussions`."""
-    alpha, eta, mobility = prepared
+    alpha, mobility = prepared
     numbers, a, f, inertia = alpha
     progress, h, q, v, motion = grid.progress[0], grid.step, grid.q, grid.v, grid.motion
-    modes, new = motion.modes, 1.0 - numbers.alpha_f
+    modes, new, eta = motion.modes, 1.0 - numbers.alpha_f, numbers.eta
+    restitution = motion.number0  # of Newton's law, the only law of methods by percussions
     while progress.step < grid.steps:
         sine = math.sin(motion.drive * (grid.clock + (progress.step + 1) * h))
         depth, before = tip_of(motion, q, v)
-        predict(grid, alpha, eta, sine)
+        predict(grid, alpha, sine)
         _d, after = tip_of(motion, q, v)
-        push = percussion_of(motion, h, depth, before, after, mobility)
+        push = max(0.0, (after + restitution * before) / mobility) if depth + 0.5 * h * before >= 0.0 else 0.0
         for k in range(q.size if push > 0.0 else 0):
             jump = push_on(motion, k, push)
             change = -new * (modes[DECAY, k] + eta * h * modes[SQUARE, k]) * jump / inertia[k]
@@ -168,15 +156,15 @@ class MoreauJean(FixedStep):
 
     def critical_stiffness(self, motion: Motion) -> float:
         """Infinite, or below zero if a mode grows in flight [N/m]; the method has no contact stiffness."""
-        half = 0.5 * motion.decay
-        over = np.sqrt(np.maximum(half**2 - motion.omega**2, 0.0))
-        # eigenvalues -c/2 +- i d of modulus omega, or the larger of two real ones, -c/2 - k
-        size = np.where(over > 0.0, half + over, motion.omega)
-        lost = 2.0 * np.where(over > 0.0, size, half)
-        gained = self.step * size**2 * (1.0 - 2.0 * self.theta)
-        return -1.0 if np.any(gained > lost + MARGIN * np.abs(gained)) else math.inf
+        holds = stable(self.numbers, self.step * motion.omega, self.step * motion.decay)
+        return math.inf if np.all(holds) else -1.0
 
-    def prepare(self, grid: Grid) -> object:
+    @property
+    def numbers(self) -> AlphaNumbers:
         """alpha_m = alpha_f = 0, beta = theta^2, gamma = eta = theta."""
         theta = float(self.theta)
-        return before_percussions(AlphaNumbers(0.0, 0.0, theta**2, theta), theta, grid)
+        return AlphaNumbers(0.0, 0.0, theta**2, theta, theta)
+
+    def prepare(self, grid: Grid) -> object:
+        """The state before the first step, and sum phi^2/D [1/kg]."""
+        return before_percussions(self.numbers, grid)

@@ -33,8 +33,7 @@ from typing import ClassVar
 from contact.integrators.fixed_step import FixedStep
 from contact.integrators.generalised_alpha import chung_hulbert
 from contact.integrators.grid import Grid
-from contact.integrators.moreau_jean import before_percussions, through_percussions
-from contact.laws import NEWTON
+from contact.integrators.moreau_jean import MoreauJean, before_percussions, through_percussions
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,7 +46,7 @@ class NonsmoothGeneralisedAlpha(FixedStep):
     rho: float
     name: ClassVar[str] = "nonsmooth-generalised-alpha"
     order: ClassVar[float] = 2.0
-    laws: ClassVar[tuple[int, ...]] = (NEWTON,)
+    laws: ClassVar[tuple[int, ...]] = MoreauJean.laws
     time_loop: ClassVar[Callable[..., int]] = staticmethod(through_percussions)
 
     def __post_init__(self) -> None:
@@ -55,5 +54,5 @@ class NonsmoothGeneralisedAlpha(FixedStep):
         chung_hulbert(self.rho)
 
     def prepare(self, grid: Grid) -> object:
-        """The numbers of Chung and Hulbert for rho, and eta = 1/2."""
-        return before_percussions(chung_hulbert(self.rho), 0.5, grid)
+        """The numbers of Chung and Hulbert for rho, with eta = 1/2."""
+        return before_percussions(chung_hulbert(self.rho), grid)

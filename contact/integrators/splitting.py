@@ -32,14 +32,12 @@ and the first and the last are one kick, so that
 
 known from s + 1 values.  At their lowest positive root an eigenvalue passes -1 or 1.  At order 2 without
 damping it is 1/k = h sum phi^2 tan(omega h/2)/(2 omega), for h -> 0 the limit of central difference on a free
-body of mass 1/Phi: the frequencies of the spring itself set no limit.  For omega h < pi and no damping the
-step is stable below this root.  At k = 0 all eigenvalues in the upper half plane have the same signature
-(M. G. Krein), and such eigenvalues cannot leave the circle until they meet their conjugates.  Order 4 first
-fails in a narrow band, h sqrt(k Phi) = 3.163 to 3.169 for a free body, by a growth of 1.0024 a step, and then
-from 5.03 on.  The lower value is the limit.
+body of mass 1/Phi: the frequencies of the spring itself set no limit.  Order 4 first fails in a narrow band,
+h sqrt(k Phi) = 3.163 to 3.169 for a free body, by a growth of 1.0024 a step, and then from 5.03 on.  The
+lower value is the limit.
 
-With damping, and beyond omega h = pi, pairs may leave the circle elsewhere: beyond pi near the resonances of
-step and contact, theta_j + theta_k = 2 pi m.  There a search finds the first k below the root at which the
+With damping, and beyond omega h = pi, pairs may leave the circle below that root: beyond pi near the
+resonances of step and contact, theta_j + theta_k = 2 pi m.  A search finds the first k there at which the
 spectral radius exceeds one; it may miss narrower resonances.  In flight there is no limit.
 """
 
@@ -56,14 +54,15 @@ from beam.parameters import InvalidValue
 from contact.flight.modal_flow import flow_over
 from contact.flight.motion import DAMPED, Motion, motion_of
 from contact.integrators.fixed_step import FixedStep
-from contact.integrators.grid import Grid
+from contact.integrators.grid import Grid, first_tangent
 from contact.integrators.splitting_step import Composition, Split, split_steps, sub_flows
-from contact.laws import HERTZ, LINEAR, LinearContact
+from contact.laws import LinearContact
 
 SEARCH, SEARCH_BEYOND_PI, EACH = 1, 6, 100
 """Decades of k below the lowest root that are searched, for omega h < pi and beyond, and values in each."""
 
 JUST_BEYOND = 1e-5  # how far beyond a root its instability is looked for, relative
+
 EXCEEDS = 1e-7  # least excess of the spectral radius over one: rounding makes 1e-8 at a double eigenvalue
 
 STRANG = Composition(flows=np.array([1.0]), kicks=np.array([0.5, 0.5]))
@@ -110,65 +109,49 @@ def spectral_radius(
     return np.abs(np.linalg.eigvals(scale[:, None] * matrix / scale)).max(axis=-1)
 
 
-def _passage(motion: Motion, composition: Composition, step: float, damping: float) -> float:
-    """The lowest contact stiffness at which an eigenvalue passes -1 or 1, infinite if there is none [N/m].
+def first_instability(motion: Motion, composition: Composition, step: float, damping: float = 0.0) -> float:
+    """The lowest contact stiffness at which a lasting contact is unstable [N/m].
 
-    A root counts if the step is unstable just beyond it, since rounding may add a root to det(M - I).  Each
-    is found anew from values closer to it.
+    A root of det(M + I) or det(M - I) counts if the step is unstable just beyond it, since rounding may add a
+    root to the second.  Each is found anew from values closer to it.
     """
     degree = composition.flows.size
     nodes = 0.5 - 0.5 * np.cos(np.pi * (np.arange(degree + 1) + 0.5) / (degree + 1))
+    width, passages = 4.0 * degree**2 / (step**2 * motion.inverse_mass), []
+
+    def unstable(stiffness: ArrayLike) -> np.ndarray:
+        return spectral_radius(motion, composition, step, stiffness, damping) > 1.0 + EXCEEDS
 
     def roots(sign: float, width: float) -> np.ndarray:
         matrices = step_matrix(motion, composition, step, width * nodes, damping)
         values = np.linalg.det(matrices + sign * np.eye(2 * motion.size))
         found = np.polynomial.Polynomial.fit(nodes, values, degree, domain=[0.0, 1.0]).roots()
-        real = np.abs(found.imag) <= 1e-9 * np.abs(found)
-        return width * np.sort(found.real[real & (found.real > 0.0)])
+        return width * found.real[(np.abs(found.imag) <= 1e-9 * np.abs(found)) & (found.real > 0.0)]
 
-    lowest = math.inf
     for sign in (1.0, -1.0):
-        for coarse in roots(sign, 4.0 * degree**2 / (step**2 * motion.inverse_mass)):
+        for coarse in roots(sign, width):
             near = roots(sign, 2.0 * coarse)
             root = float(near[np.argmin(np.abs(near - coarse))]) if near.size else float(coarse)
-            beyond = spectral_radius(motion, composition, step, (1.0 + JUST_BEYOND) * root, damping)
-            if beyond > 1.0 + EXCEEDS:
-                lowest = min(lowest, root)
-                break
-    return lowest
-
-
-def first_instability(motion: Motion, composition: Composition, step: float, damping: float = 0.0) -> float:
-    """The lowest contact stiffness at which a lasting contact is unstable [N/m]."""
-
-    def unstable(stiffness: ArrayLike) -> np.ndarray:
-        return spectral_radius(motion, composition, step, stiffness, damping) > 1.0 + EXCEEDS
-
-    high = _passage(motion, composition, step, damping)
+            if unstable((1.0 + JUST_BEYOND) * root):
+                passages.append(root)
+    first = min(passages, default=10.0 * width)
     under = motion.omega > 0.5 * motion.decay
-    beyond_pi = bool(np.any(motion.row(DAMPED)[under] * step >= math.pi))
-    if not (beyond_pi or damping > 0.0 or np.any(motion.decay > 0.0)):
-        return high
-    if not math.isfinite(high):
-        high = 40.0 * composition.flows.size**2 / (step**2 * motion.inverse_mass)
-    decades = SEARCH_BEYOND_PI if beyond_pi else SEARCH
-    values = high * 10.0 ** np.linspace(-decades, 0.0, decades * EACH + 1)
-    for chunk in np.split(np.arange(decades * EACH), decades):
-        found = chunk[unstable(values[chunk])]
-        if found.size:
-            low, high = float(values[max(found[0] - 1, 0)]), float(values[found[0]])
-            while high - low > 1e-9 * high:
-                middle = 0.5 * (low + high)
-                low, high = (low, middle) if unstable(middle) else (middle, high)
-            return low
-    return high
+    decades = SEARCH_BEYOND_PI if np.any(motion.row(DAMPED)[under] * step >= math.pi) else SEARCH
+    values = first * 10.0 ** np.linspace(-decades, 0.0, decades * EACH + 1)
+    found = np.flatnonzero(unstable(values[:-1]))
+    if found.size == 0:
+        return first
+    low, high = float(values[max(found[0] - 1, 0)]), float(values[found[0]])
+    while high - low > 1e-9 * high:
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if unstable(middle) else (middle, high)
+    return low
 
 
 @lru_cache(maxsize=256)
-def _limit(numbers: bytes, n: int, order: int, step: float, damping: float) -> float:
+def _limit(rows: tuple[tuple[float, ...], ...], order: int, step: float, damping: float) -> float:
     """`first_instability`, cached since the search takes some hundredths of a second."""
-    omega, decay, phi = np.frombuffer(numbers).reshape(3, n)
-    motion = motion_of(omega, decay, phi, law=LinearContact(stiffness=1.0, damping=damping), gap=0.0)
+    motion = motion_of(*np.array(rows), law=LinearContact(stiffness=1.0), gap=0.0)
     return first_instability(motion, COMPOSITIONS[order], step, damping)
 
 
@@ -181,7 +164,6 @@ class Splitting(FixedStep):
 
     order: int = 2  # type: ignore[misc]
     name: ClassVar[str] = "splitting"
-    laws: ClassVar[tuple[int, ...]] = (LINEAR, HERTZ)
     time_loop: ClassVar[Callable[..., int]] = staticmethod(split_steps)
     deviations: ClassVar[bool] = True
 
@@ -193,12 +175,11 @@ class Splitting(FixedStep):
     def critical_stiffness(self, motion: Motion) -> float:
         """Lowest stiffness of a lasting contact at which a step is unstable [N/m].
 
-        It includes the dashpot of a linear law.  For Hertz's and Hunt and Crossley's laws it is a tangent
-        stiffness; their damping raises the limit and is left out.
+        It is a tangent stiffness, with the damping of the first touch.  Under Hunt and Crossley's law the
+        damping grows with the depth; it raises the limit and is left out.
         """
-        numbers = np.array([motion.omega, motion.decay, motion.phi])
-        damping = motion.number1 if motion.law == LINEAR else 0.0
-        return _limit(numbers.tobytes(), motion.size, self.order, self.step, damping)
+        rows = tuple(tuple(row) for row in (motion.omega, motion.decay, motion.phi))
+        return _limit(rows, self.order, self.step, first_tangent(motion)[1])
 
     def prepare(self, grid: Grid) -> Split:
         """The composition, and its sub-flows over a step."""

@@ -31,7 +31,7 @@ FORMS = [
 
 def factors(numbers: AlphaNumbers, size: float, decay: float = 0.0) -> np.ndarray:
     """The roots z of the polynomial in ``generalised_alpha`` for h omega = `size` and h c = `decay`, (3,)."""
-    alpha_m, alpha_f, beta, gamma = numbers
+    alpha_m, alpha_f, beta, gamma, _eta = numbers
     inertia = np.convolve([1.0 - alpha_m, alpha_m], [1.0, -2.0, 1.0])
     spring = size**2 * np.array([beta, 0.5 + gamma - 2.0 * beta, 0.5 - gamma + beta])
     dashpot = decay * np.array([gamma, 1.0 - 2.0 * gamma, gamma - 1.0])

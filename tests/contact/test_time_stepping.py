@@ -42,7 +42,7 @@ def by_percussions(theta: float) -> tuple[np.ndarray, np.ndarray, int]:
 
 def by_all_unknowns(rho: float) -> tuple[np.ndarray, np.ndarray, int]:
     """A step of the nonsmooth method, (q, v, a, f, p) in one linear system, both cases of the stop tried."""
-    m, f, beta, gamma = chung_hulbert(rho)
+    m, f, beta, gamma, _eta = chung_hulbert(rho)
     n, one, h = 3, np.eye(3), STEP
     q, v, acted = THROWN.displacement, THROWN.velocity, 0
     a = smooth = -SPRINGS @ q - DAMPING @ v
