@@ -12,6 +12,7 @@ hardly be meant, such as one wrong by a factor of 1000, brings a warning `Suspic
 from __future__ import annotations
 
 import math
+import re
 import sys
 import warnings
 from collections.abc import Iterable
@@ -30,7 +31,20 @@ Class = TypeVar("Class", bound=type)
 
 
 class Refusal(Exception):
-    """Wrong use; the message is one sentence that says what is valid."""
+    """Wrong use; the message is one sentence that says what is valid.
+
+    `Refusal(field, words)` names the wrong argument first, perhaps described: "frequency of the drive". More
+    arguments may follow as parts of their own: `Refusal("size", "is 3 m, above", "gap", "of 2 m")`.
+    `Refusal(sentence)` blames no argument. The parts make one line.
+    """
+
+    def __str__(self) -> str:
+        return " ".join(" ".join(self.args).split())
+
+    @property
+    def field(self) -> str:
+        """Name of the wrong argument, such as "frequency"; "" if the refusal blames none."""
+        return re.split(r"[^\w.]", self.args[0])[0] if len(self.args) > 1 else ""
 
 
 class InvalidValue(Refusal, ValueError):
@@ -67,10 +81,10 @@ def brief(value: object) -> str:
     return line if len(line) <= LONGEST_SHOWN else line[: LONGEST_SHOWN - 3] + "..."
 
 
-def require(condition: bool, sentence: str) -> None:
-    """Raise InvalidValue with this sentence, put on one line, unless the condition holds."""
+def require(condition: bool, *parts: str) -> None:
+    """Raise InvalidValue with these parts (see `Refusal`) unless the condition holds."""
     if not condition:
-        raise InvalidValue(" ".join(sentence.split()))
+        raise InvalidValue(*parts)
 
 
 def is_number(value: object) -> bool:
@@ -107,11 +121,10 @@ def require_within(
         valid = f"between {low:g} and {high:g}"
     elif len(limits) < 2:
         valid = f"finite and {valid}" if limits else "finite"
-    if isinstance(value, bool) or not isinstance(value, Real):
-        raise InvalidType(f"{name} is {shown(value)}; it must be a number in {unit}, {valid}")
-    if not (is_number(value) and all(holds(float(value), bound) for bound, _, holds in limits)):
-        raise InvalidValue(f"{name} is {shown(value)} {unit}; it must be {valid}")
-    return float(value)
+    given: float = require_kind(name, value, Real, f"a number in {unit}, {valid}")
+    if not (is_number(given) and all(holds(float(given), bound) for bound, _, holds in limits)):
+        raise InvalidValue(name, f"is {shown(value)} {unit}; it must be {valid}")
+    return float(given)
 
 
 def require_whole(
@@ -120,11 +133,10 @@ def require_whole(
     """Return the value as an int, if whole and from `low` to `high`; `why` ends the sentence otherwise."""
     least = {0: "zero or more", 1: "one or more"}.get(low, f"{low} or more")
     valid = f"a whole number, {least}" if high is None else f"a whole number between {low} and {high}"
-    if isinstance(value, bool) or not isinstance(value, Real):
-        raise InvalidType(f"{name} is {shown(value)}; it must be {valid}{why}")
-    if not is_whole(value, low) or (high is not None and float(value) > high):
-        raise InvalidValue(f"{name} is {shown(value)} {unit}; it must be {valid}{why}")
-    return int(float(value))
+    given: float = require_kind(name, value, Real, f"{valid}{why}")
+    if not is_whole(given, low) or (high is not None and float(given) > high):
+        raise InvalidValue(name, f"is {shown(value)} {unit}; it must be {valid}{why}")
+    return int(float(given))
 
 
 def final(kind: Class) -> Class:
@@ -139,9 +151,12 @@ def final(kind: Class) -> Class:
 
 
 def require_kind(name: str, value: Any, kind: type | tuple[type, ...], words: str) -> Any:
-    """Return the value, or raise InvalidType unless it is of this kind, described by `words`."""
-    if not isinstance(value, kind):
-        raise InvalidType(f"{name} is {shown(value)}; it must be {words}")
+    """Return the value, or raise InvalidType unless it is of this kind, described by `words`.
+
+    A class is of no kind, and a truth value is no number.
+    """
+    if not isinstance(value, kind) or isinstance(value, type) or (kind is Real and isinstance(value, bool)):
+        raise InvalidType(name, f"is {shown(value)}; it must be {words}")
     return value
 
 
@@ -166,13 +181,13 @@ def require_array(
     except (TypeError, ValueError):
         given = np.asarray(None)
     if given.dtype.kind not in "iuf":
-        raise InvalidType(f"{name} is {shown(values)}; it must be {words} in {unit}")
+        raise InvalidType(name, f"is {shown(values)}; it must be {words} in {unit}")
     array = np.array(given, dtype=np.float64)
     if (dimensions is not None and array.ndim != dimensions) or (shape is not None and array.shape != shape):
         wanted = f" of shape {shape}" if shape is not None else ""
-        raise InvalidValue(f"{name} has shape {array.shape}; it must be {words} in {unit}{wanted}")
+        raise InvalidValue(name, f"has shape {array.shape}; it must be {words} in {unit}{wanted}")
     if not np.all(np.isfinite(array)):
         found = f"is {shown(values)}" if shape is not None else f"holds {array[~np.isfinite(array)].flat[0]}"
-        raise InvalidValue(f"{name} {found} {unit}; it must be {words}, every entry finite")
+        raise InvalidValue(name, f"{found} {unit}; it must be {words}, every entry finite")
     array.setflags(write=False)
     return array

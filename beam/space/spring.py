@@ -50,6 +50,6 @@ class SpatialSpring:
     def __post_init__(self) -> None:
         check_strip(self, SpatialSection, 3)
         for section, piece in zip(self.sections, self.centreline.pieces, strict=True):
-            offset = section.shear_offset
-            require(not (offset and piece.curvature), f"shear_offset is {offset} m; on an arc it must be 0")
+            a = section.shear_offset
+            require(not (a and piece.curvature), "shear_offset", f"is {a} m; on an arc it must be 0")
         require_array("tip_offset", self.tip_offset, "m", shape=(3,), words="three finite numbers")

@@ -82,7 +82,7 @@ class Key:
             if isinstance(self.default, int) and found is not None:
                 found = int(found) if found % 1 == 0 else None
         if found is None:
-            raise SceneError(f"{name} must be {self.valid()}, not {shown(value)}")
+            raise SceneError(name, f"must be {self.valid()}, not {shown(value)}")
         return found
 
     def _number(self, value: object) -> float | None:

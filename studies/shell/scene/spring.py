@@ -188,7 +188,7 @@ def model_of(scene: Scene) -> ModalModel:
         participation=participation,
         static_compliance=data.static_compliance_m_per_n or None,
         tip_mass=data.tip_mass_kg or None,
-        readouts={READOUT: tip_values},
+        points={READOUT: beam.Point(row=tip_values)},
     )
 
 
@@ -226,7 +226,7 @@ def single_mode_of(scene: Scene) -> ModalModel:
         given, valid = shown(scene.single_mode.free_period_s), f"at least {SHORTEST:g} (unit s)"
         raise SceneError(f"{keys['free_period']} must be {valid}, or -1 for that of mode 1, not {given}")
     model = scene.make(beam.single_mode, keys)
-    return dataclasses.replace(model, readouts={READOUT: model.phi})
+    return dataclasses.replace(model, points={READOUT: model.points["tip"]})
 
 
 def first_mode(scene: Scene) -> tuple[float, float]:
