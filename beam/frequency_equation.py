@@ -80,13 +80,6 @@ class UniformBeam:
             free, words = self.supports[1] == "free", f"at an end that is {self.supports[1]} it must be 0"
             require(free or not value, name, f"is {value} {unit}; {words}")
 
-    @property
-    def static_compliance(self) -> float:
-        """Tip displacement per unit force [m/N], L^3/(3 EI), of a beam clamped at s = 0 and free at s = L."""
-        ends = " and ".join(self.supports)
-        require(ends == "clamped and free", f"static_compliance is for supports clamped and free, not {ends}")
-        return self.length**3 / (3.0 * self.bending_stiffness)
-
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ExactModes:

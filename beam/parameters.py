@@ -33,9 +33,8 @@ Class = TypeVar("Class", bound=type)
 class Refusal(Exception):
     """Wrong use; the message is one sentence that says what is valid.
 
-    `Refusal(field, words)` names the wrong argument first, perhaps described: "frequency of the drive". More
-    arguments may follow as parts of their own: `Refusal("size", "is 3 m, above", "gap", "of 2 m")`.
-    `Refusal(sentence)` blames no argument. The parts make one line.
+    Its parts are joined to one line: first the wrong argument, perhaps described ("frequency of the drive"),
+    then words, and other arguments and words in turn. A sentence in one part blames no argument.
     """
 
     def __str__(self) -> str:
@@ -97,11 +96,6 @@ def is_number(value: object) -> bool:
         return False
 
 
-def is_whole(value: object, low: int) -> bool:
-    """Return whether the value is a whole number, `low` or more; 2.0 is one, True is not."""
-    return is_number(value) and value % 1 == 0 and value >= low  # type: ignore[operator]
-
-
 def require_within(
     name: str,
     value: object,
@@ -134,7 +128,7 @@ def require_whole(
     least = {0: "zero or more", 1: "one or more"}.get(low, f"{low} or more")
     valid = f"a whole number, {least}" if high is None else f"a whole number between {low} and {high}"
     given: float = require_kind(name, value, Real, f"{valid}{why}")
-    if not is_whole(given, low) or (high is not None and float(given) > high):
+    if not (is_number(given) and given % 1 == 0 and low <= given <= (math.inf if high is None else high)):
         raise InvalidValue(name, f"is {shown(value)} {unit}; it must be {valid}{why}")
     return int(float(given))
 
@@ -151,10 +145,7 @@ def final(kind: Class) -> Class:
 
 
 def require_kind(name: str, value: Any, kind: type | tuple[type, ...], words: str) -> Any:
-    """Return the value, or raise InvalidType unless it is of this kind, described by `words`.
-
-    A class is of no kind, and a truth value is no number.
-    """
+    """Return the value if it is of this kind (no class, and True is no number), or else raise InvalidType."""
     if not isinstance(value, kind) or isinstance(value, type) or (kind is Real and isinstance(value, bool)):
         raise InvalidType(name, f"is {shown(value)}; it must be {words}")
     return value

@@ -35,8 +35,6 @@ def folded_u(
     tip: Tip,
     damped_section: StripSection | None = None,
     damped_span: tuple[float, float] | None = None,
-    supports: tuple[Support, Support] = ("clamped", "clamped"),
-    drive: tuple[float, float] = (0.0, 1.0),
     readouts: Mapping[str, Readout] | None = None,
 ) -> LeafSpring:
     """Return a strip folded into a U, the tip in the middle of the bend.
@@ -50,9 +48,6 @@ def folded_u(
     tip : Tip
     damped_span : tuple of two floats, optional
         Start and end of the layer on each leg, measured from the supports [m]; the whole leg by default.
-    supports : tuple of two supports
-    drive : tuple of two floats
-        Direction (x, y) [1]: (0, 1) is sway, (1, 0) is along the legs.
     readouts : mapping of str to Readout, optional
     """
     leg, sections = _leg(leg_length, section, damped_section, damped_span)
@@ -62,10 +57,9 @@ def folded_u(
     return LeafSpring(
         centreline=Centreline(pieces=(*leg, bend, *reversed(leg)), start=(0.0, -bend_radius)),
         sections=(*sections, section, *reversed(sections)),
-        supports=supports,
+        supports=("clamped", "clamped"),
         tip=tip,
         tip_at=leg_length + 0.5 * math.pi * bend_radius,
-        drive=drive,
         readouts=readouts or {},
     )
 
@@ -98,18 +92,13 @@ def flat_u(
     if r > width:
         words = f"above the width of a leg, {width} m; such a bend also twists, unlike a plate"
         suspect(f"bend_radius is {r} m, {words}")
-
-    def both(leg: StripSection) -> StripSection:
-        return replace(leg, width=2.0 * width, slot=2.0 * r - width)
-
-    require_kind("damped_section", damped_section, (StripSection, type(None)), "a StripSection or None")
-    damped = None if damped_section is None else both(damped_section)
-    legs, sections = _leg(leg_length, both(section), damped, damped_span)
+    legs, sections = _leg(leg_length, section, damped_section, damped_span)
+    both = [replace(leg, width=2.0 * width, slot=2.0 * r - width) for leg in sections]
     outer = 2.0 * r + width
     bend = Straight(length=max(r, math.pi * r * width / outer))
     return LeafSpring(
         centreline=Centreline(pieces=(*legs, bend)),
-        sections=(*sections, replace(section, width=outer)),
+        sections=(*both, replace(section, width=outer)),
         supports=("clamped", "free"),
         tip=tip,
         tip_at=leg_length + r,

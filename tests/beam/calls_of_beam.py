@@ -191,8 +191,10 @@ BEAM = (
        kind=dict(others=each("strips", beam.StripDamping), scaled=1), value=dict(decay_rate=-3.56)),
     of(beam.reduce, lambda: dict(modes=modes(), damping=beam.ConstantRatio(ratio=0.01), count=2),
        kind=dict(modes=mesh(), damping=0.01), value=dict(count=each(0, 50))),
+    of(beam.Point, dict(row=[10.0, 9.0], static_compliance=1e-3, mass=0.004),
+       kind=dict(row="10"), value=dict(row=[], static_compliance=-1e-3)),
     of(beam.ModalModel, MODAL | dict(static_compliance=1e-3, tip_mass=0.004),
-       kind=dict(omega=each("150", [150.0, 1j], [True, False]), readouts=[1.0, 2.0]),
+       kind=dict(omega=each("150", [150.0, 1j], [True, False]), points=each([1.0], {"tip": [10.0, 9.0]})),
        value=dict(omega=[], decay_rate=[-3.0, 9.0], phi=[10.0], participation=[NAN, 1.0], tip_mass=-1.0)),
     of(lambda phi: dataclasses.replace(
            beam.ModalModel(**MODAL, static_compliance=1e-2, tip_mass=0.004), phi=phi),  # type: ignore[arg-type]

@@ -138,6 +138,26 @@ def test_a_wrong_value_is_refused_with_its_key(override):
 
 
 @pytest.mark.parametrize(
+    ("constructor", "key", "others"),
+    [
+        (beam.Layer, "spring.tape_thickness_m", {}),
+        (beam.StripSection, "spring.thickness_m", {"width": 1e-4}),
+        (lambda thickness, material: thickness + material, "spring.thickness_m", {}),
+    ],
+)
+def test_refusals_get_the_key_of_their_field_and_bugs_pass(constructor, key, others):
+    scene = Scene().replace({"spring.tape_thickness_m": 0.0})
+    with pytest.raises((SceneError, TypeError)) as caught:
+        scene.make(constructor, {"thickness": key}, material=beam.BRASS, **others)
+    if constructor not in (beam.Layer, beam.StripSection):
+        assert caught.type is TypeError
+        return
+    for error, field in ((caught.value, key), (caught.value.__cause__, "thickness")):
+        again = pickle.loads(pickle.dumps(error))
+        assert again.field == field and str(again) == str(error) and str(error).startswith(f"{field} is ")
+
+
+@pytest.mark.parametrize(
     ("overrides", "named"),
     [
         (["spring.tape_thickness_m=0"], "spring.tape_thickness_m"),
