@@ -140,8 +140,7 @@ class MeasuredDecay:
     def decay_rates(self, modes: Modes) -> Array:
         """Return c [1/s], shape (n_modes,)."""
         require_kind("modes", modes, Modes, "Modes, from natural_modes")
-        candidates = np.flatnonzero(modes.coupled & (modes.omega > 0.0))
-        count = modes.omega.size
+        candidates, count = np.flatnonzero(modes.coupled & (modes.omega > 0.0)), modes.omega.size
         require(candidates.size > 0, "modes", f"has {count} modes, none of which is coupled and vibrates")
         first, rates = candidates[0], np.array(self.others.decay_rates(modes))
         if not self.scaled:

@@ -75,8 +75,7 @@ class UniformBeam:
             require_within(name, getattr(self, name), unit, above=0)
         object.__setattr__(self, "supports", two_supports(self.supports))
         for name, unit in (("tip_mass", "kg"), ("tip_rotary_inertia", "kg m^2")):
-            value = getattr(self, name)
-            require_within(name, value, unit, low=0)
+            value = require_within(name, getattr(self, name), unit, low=0)
             free, words = self.supports[1] == "free", f"at an end that is {self.supports[1]} it must be 0"
             require(free or not value, name, f"is {value} {unit}; {words}")
 
@@ -147,8 +146,7 @@ def exact_modes(beam: UniformBeam, count: int) -> ExactModes:
     grid = np.arange(SCAN_START, (count + 3) * math.pi, SCAN_STEP)
     values = frequency_function(beam, grid)
     left = np.flatnonzero(np.sign(values[:-1]) * np.sign(values[1:]) < 0.0)[:count]
-    determinant = partial(frequency_function, beam)
-    roots = np.array([brentq(determinant, grid[i], grid[i + 1], xtol=1e-14) for i in left])
+    roots = np.array([brentq(partial(frequency_function, beam), *grid[i : i + 2], xtol=1e-14) for i in left])
     nulls = np.array([np.linalg.svd(_rows(beam, root))[2][-1] for root in roots])
     raw = ExactModes(beam=beam, wave_numbers=roots / beam.length, coefficients=nulls)
     x, weight = np.polynomial.legendre.leggauss(POINTS_PER_HALF_WAVE)

@@ -20,7 +20,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.linalg import eigh
 
-from .modal_model import UNITS, ModalChange, ModalModel, Point
+from .modal_model import ModalChange, ModalModel, Point
 from .parameters import Array, require, require_kind, require_whole, require_within
 
 
@@ -31,7 +31,7 @@ def free_period_change(model: ModalModel) -> ModalChange:
     """
     omega, rates, k = _frequencies(model)
     change = -omega / omega[k] ** 2 * (2.0 * np.pi) ** 2 / model.free_period**3
-    return _with_fixed_shapes(change, 0.0 * rates)
+    return ModalChange(omega=change, decay_rate=0.0 * rates, phi=0.0 * change, participation=0.0 * change)
 
 
 def decay_rate_change(model: ModalModel, mode: int | None = 0) -> ModalChange:
@@ -46,7 +46,8 @@ def decay_rate_change(model: ModalModel, mode: int | None = 0) -> ModalChange:
         change = scaled
     else:
         change = np.eye(model.n_modes)[require_whole("mode", mode, "[1]", low=0, high=model.n_modes - 1)]
-    return _with_fixed_shapes(0.25 * rates[k] * change[k] * omega / omega[k] ** 2, change)
+    moved = 0.25 * rates[k] * change[k] * omega / omega[k] ** 2
+    return ModalChange(omega=moved, decay_rate=change, phi=0.0 * moved, participation=0.0 * moved)
 
 
 def tip_mass_change(model: ModalModel) -> ModalChange:
@@ -94,14 +95,11 @@ def with_tip_mass(model: ModalModel, mass: float) -> ModalModel:
     for name, point in model.points.items():
         compliance = point.static_compliance and point.static_compliance / scale**2
         points[name] = replace(point, row=point.row @ shapes, static_compliance=compliance)
-    rows = (
-        paces * scale,
-        model.decay_rate,
-        points["tip"].row,
-        (model.participation + added * model.phi) @ shapes,
-    )
     return ModalModel(
-        **dict(zip(UNITS, rows, strict=True)),
+        omega=paces * scale,
+        decay_rate=model.decay_rate,
+        phi=points["tip"].row,
+        participation=(model.participation + added * model.phi) @ shapes,
         static_compliance=points["tip"].static_compliance,
         tip_mass=float(mass),
         points=points,
@@ -112,8 +110,3 @@ def _frequencies(model: ModalModel) -> tuple[Array, Array, int]:
     """Return omega [rad/s], the decay rates [1/s], and the index of mode 1 in them."""
     require_kind("model", model, ModalModel, "a ModalModel")
     return model.omega, model.decay_rate, model.leading_mode
-
-
-def _with_fixed_shapes(omega: Array, rates: Array) -> ModalChange:
-    """Return the change of these frequencies and rates, with phi and participation fixed."""
-    return ModalChange(omega=omega, decay_rate=rates, phi=0.0 * omega, participation=0.0 * omega)

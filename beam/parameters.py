@@ -107,9 +107,8 @@ def require_within(
     below: float | None = None,
 ) -> float:
     """Return the value as a float, or refuse it unless low <= value <= high and above < value < below."""
-    lower = (low, "{} or more", ge), (above, "above {}", gt)
-    upper = (high, "at most {}", le), (below, "below {}", lt)
-    limits = [(bound, words, holds) for bound, words, holds in lower + upper if bound is not None]
+    ends = (low, "{} or more", ge), (above, "above {}", gt), (high, "at most {}", le), (below, "below {}", lt)
+    limits = [(bound, words, holds) for bound, words, holds in ends if bound is not None]
     valid = " and ".join(words.format(f"{bound:g}" if bound else "zero") for bound, words, _ in limits)
     if low is not None and high is not None:
         valid = f"between {low:g} and {high:g}"

@@ -84,10 +84,8 @@ class Tip:
 
     Parameters
     ----------
-    mass : float
-        Mass of the body [kg], not negative.
-    rotary_inertia : float
-        Moment of inertia about the z axis through the centreline [kg m^2], not negative.
+    mass, rotary_inertia : float
+        Mass [kg], and moment of inertia about the z axis through the centreline [kg m^2], not negative.
     """
 
     mass: float = 0.0

@@ -48,18 +48,12 @@ class SpatialSection:
 
     Parameters
     ----------
-    axial_stiffness : float
-        EA [N], positive.
-    in_plane_stiffness, out_of_plane_stiffness, torsional_stiffness : float
-        EI_z, EI_n and GJ [N m^2], positive.
-    mass_per_length : float
-        m [kg/m], positive.
-    polar_inertia : float
-        I [kg m], positive.
-    warping_stiffness : float
-        EG [N m^4], not negative.
-    shear_offset : float
-        a [m], not negative; 0 on an arc.
+    axial_stiffness, in_plane_stiffness, out_of_plane_stiffness, torsional_stiffness : float
+        EA [N], and EI_z, EI_n and GJ [N m^2], positive.
+    mass_per_length, polar_inertia : float
+        m [kg/m] and I [kg m], positive.
+    warping_stiffness, shear_offset : float
+        EG [N m^4] and a [m], not negative; a is 0 on an arc.
     """
 
     axial_stiffness: float
@@ -129,9 +123,8 @@ def channel(*, material: Material, width: float, flange: float, thickness: float
     require_within("width", width, "m", above=0)
     require_within("flange", flange, "m", low=0)
     require_within("thickness", thickness, "m", above=0)
-    words = f"is {thickness} m; it must not exceed half of the width {width} m"
-    require(2.0 * thickness <= width, "thickness", words)
     b, h, t = width, flange, thickness
+    require(2.0 * t <= b, "thickness", f"is {t} m; it must not exceed half of the width {b} m")
     web, both = b * t, 2.0 * h * t
     area, arm = web + both, 0.5 * (h + t)  # arm: from the middle of the web to the middle of a flange
     centroid = both * arm / area

@@ -24,15 +24,12 @@ class SpatialSpring:
 
     Parameters
     ----------
-    centreline : Centreline
+    centreline, supports, tip_at
+        As for `beam.LeafSpring`.
     sections : tuple of SpatialSection
         One for each piece of the centreline.
-    supports : tuple of two supports
-        At s = 0 and at the far end: "clamped", "pinned", "guided" or "free".
     tip : Tip
         Its rotary inertia counts about every axis.
-    tip_at : float
-        Arc length where the tip sits [m].
     tip_offset : tuple of three floats
         c, from the centroid of the section there to the tip, along x, y and z [m].
     drive : tuple of three floats
