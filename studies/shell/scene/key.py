@@ -25,12 +25,11 @@ class SceneError(InvalidValue):
 
 
 def shown(value: object) -> str:
-    """The value as part of a sentence: one line of at most 60 characters."""
+    """The value as part of a sentence, at most 60 characters."""
     try:
         text = repr(list(value)) if isinstance(value, tuple) else repr(value)
     except ValueError:  # an integer with more digits than the interpreter is willing to print
         text = "a very large number"
-    text = "".join(character if character.isprintable() else "?" for character in text)
     return text if len(text) <= 60 else text[:57] + "..."
 
 

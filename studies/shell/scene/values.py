@@ -83,9 +83,8 @@ class Scene:
         try:
             return constructor(**own, **others)
         except Refusal as error:
-            subject, *parts = error.args
-            named = (keys.get(part, part) for part in parts)
-            raise SceneError(keys.get(error.field, subject), *named) from error
+            first, *parts = (keys.get(part, part) for part in error.args)
+            raise SceneError(keys.get(error.field, first), *parts) from error
 
     def values(self) -> dict[str, dict[str, object]]:
         """Nested plain values, section -> key -> value, as a file holds them."""
