@@ -73,7 +73,7 @@ def tip_mass_change(model: ModalModel) -> ModalChange:
 def with_tip_mass(model: ModalModel, mass: float) -> ModalModel:
     """Return `model` with another mass at its tip [kg], above zero; its modes span the motion.
 
-    The free period T, the decay rates and the signs of `phi` are kept. The points follow the modes.
+    The free period T, the decay rates and the signs of `phi` are kept, and the masses of other points.
 
     Raises
     ------
