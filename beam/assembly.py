@@ -65,7 +65,7 @@ class Discretization:
         for name in ("stiffness", "mass", "loss_stiffness"):
             shape = getattr(getattr(self, name), "shape", None)
             square = 2 * tip.shape
-            require(shape == square, f"{name} has shape {shape}; it must be a matrix of shape {square}")
+            require(shape == square, name, f"has shape {shape}; it must be a matrix of shape {square}")
 
     @property
     def n_dofs(self) -> int:

@@ -56,7 +56,7 @@ class Arc:
     def __post_init__(self) -> None:
         require_within("radius", self.radius, "m", above=0)
         angle = require_within("angle", self.angle, "rad")
-        require(angle != 0.0, f"angle is {self.angle} rad; it must be finite and not zero")
+        require(angle != 0.0, "angle", f"is {self.angle} rad; it must be finite and not zero")
 
     @property
     def length(self) -> float:
@@ -90,7 +90,7 @@ class Centreline:
     def __post_init__(self) -> None:
         pieces = require_each("pieces", self.pieces, (Straight, Arc), "a sequence of Straight and Arc")
         object.__setattr__(self, "pieces", pieces)
-        require(bool(pieces), "pieces is empty [no unit]; a centreline needs at least one Straight or Arc")
+        require(bool(pieces), "pieces", "is empty [no unit]; a centreline needs at least one Straight or Arc")
         require_array("start", self.start, "m", shape=(2,), words="a point (x, y), two finite numbers")
         require_within("heading", self.heading, "rad")
 
@@ -122,7 +122,7 @@ class Centreline:
         s = require_array("s", s, "m", words="arc lengths")
         outside = (s < -1e-12 * self.length) | (s > (1.0 + 1e-12) * self.length)
         if np.any(outside):
-            raise InvalidValue(f"s is {s[outside].flat[0]} m; it must lie between 0 and {self.length} m")
+            raise InvalidValue("s", f"is {s[outside].flat[0]} m; it must lie between 0 and {self.length} m")
         inside = np.searchsorted(self.joints, s, side="right") - 1
         return np.clip(inside, 0, len(self.pieces) - 1)
 

@@ -16,27 +16,21 @@ Each rule is a class with `decay_rates(modes)` [1/s], shape (n_modes,):
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 
 from .modes import Modes
-from .parameters import Array, InvalidType, require, require_kind, require_within, shown
+from .parameters import Array, require, require_kind, require_within
 
 
+@runtime_checkable
 class Damping(Protocol):
     """Anything that gives each mode its decay rate."""
 
     def decay_rates(self, modes: Modes) -> Array:
         """Return c [1/s], shape (n_modes,)."""
         ...
-
-
-def require_rule(name: str, rule: object) -> None:
-    """Raise TypeError unless `rule` has the method `decay_rates`."""
-    if isinstance(rule, type) or not callable(getattr(rule, "decay_rates", None)):
-        words = "it must be a rule for decay rates such as StripDamping()"
-        raise InvalidType(f"{name} is {shown(rule)}; {words}")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -140,19 +134,18 @@ class MeasuredDecay:
 
     def __post_init__(self) -> None:
         require_within("decay_rate", self.decay_rate, "1/s", low=0)
-        require_rule("others", self.others)
+        require_kind("others", self.others, Damping, "a rule for decay rates such as StripDamping()")
         require_kind("scaled", self.scaled, bool, "True or False")
 
     def decay_rates(self, modes: Modes) -> Array:
         """Return c [1/s], shape (n_modes,)."""
         require_kind("modes", modes, Modes, "Modes, from natural_modes")
-        candidates = np.flatnonzero(modes.coupled & (modes.omega > 0.0))
-        count = modes.omega.size
-        require(candidates.size > 0, f"modes has {count} modes, none of which is coupled and vibrates")
+        candidates, count = np.flatnonzero(modes.coupled & (modes.omega > 0.0)), modes.omega.size
+        require(candidates.size > 0, "modes", f"has {count} modes, none of which is coupled and vibrates")
         first, rates = candidates[0], np.array(self.others.decay_rates(modes))
         if not self.scaled:
             rates[first] = self.decay_rate
             return rates
         own = rates[first]
-        require(own > 0.0, f"others gives mode 1 a rate of {own} 1/s; to be scaled it must be above zero")
+        require(own > 0.0, "others", f"gives mode 1 a rate of {own} 1/s; to be scaled it must be above zero")
         return rates * (self.decay_rate / own)

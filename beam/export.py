@@ -66,7 +66,7 @@ def write_modes(
         The file. Point arrays: one for each mode, named by `mode_name`. Field arrays: frequencies_hz,
         decay_rates_per_s if given, coupled (0 or 1), largest_displacement_m.
     """
-    require(path.suffix == ".vtu", f"path is {path}; its name must end in .vtu")
+    require(path.suffix == ".vtu", "path", f"is {path}; its name must end in .vtu")
     mesh = solid_spring(modes, ball_radius=ball_radius)
     grid = mesh.grid()
     for mode, shape in enumerate(mesh.normalised(largest)):
@@ -113,7 +113,7 @@ def write_mode_motion(
     """
     require_whole("mode", mode, "[1]", low=0, high=modes.omega.size - 1)
     require_whole("frames", frames, "[1]", low=2)
-    require(frames % 2 == 0, f"frames is {frames} [1]; it must be an even number")
+    require(frames % 2 == 0, "frames", f"is {frames} [1]; it must be an even number")
     mesh = solid_spring(modes, ball_radius=ball_radius)
     period = 2.0 * math.pi / float(modes.omega[mode]) if modes.omega[mode] > 0.0 else 1.0
     shape = mesh.normalised(largest)[mode]
@@ -145,7 +145,7 @@ def write_frames(path: Path, frames: Iterable[tuple[float, Any]]) -> tuple[Path,
     tuple of Path
         The .pvd file, then its frames. Frames of an earlier and longer motion of the same name are removed.
     """
-    require(path.suffix == ".pvd", f"path is {path}; its name must end in .pvd")
+    require(path.suffix == ".pvd", "path", f"is {path}; its name must end in .pvd")
     folder = path.with_name(f"{path.stem}_frames")
     folder.mkdir(parents=True, exist_ok=True)
     files, lines = [], []

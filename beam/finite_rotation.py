@@ -86,7 +86,7 @@ class FiniteRotation:
         ValueError if the supports leave a rigid motion, or none of the first ten modes moves the tip.
         """
         rigid = self.linear.spring.rigid_motions
-        require(not rigid, f"supports leave {rigid} motions without strain [no unit]; they must leave none")
+        require(not rigid, "supports", f"leave {rigid} motions without strain [no unit]; none may be left")
         modes = natural_modes(self.linear, min(10, self.linear.n_dofs))
         moving = np.flatnonzero(modes.phi)
         require(moving.size > 0, "none of the first modes moves the tip [no unit]; one of them must")

@@ -29,6 +29,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -74,17 +75,9 @@ class UniformBeam:
             require_within(name, getattr(self, name), unit, above=0)
         object.__setattr__(self, "supports", two_supports(self.supports))
         for name, unit in (("tip_mass", "kg"), ("tip_rotary_inertia", "kg m^2")):
-            value = getattr(self, name)
-            require_within(name, value, unit, low=0)
+            value = require_within(name, getattr(self, name), unit, low=0)
             free, words = self.supports[1] == "free", f"at an end that is {self.supports[1]} it must be 0"
-            require(free or not value, f"{name} is {value} {unit}; {words}")
-
-    @property
-    def static_compliance(self) -> float:
-        """Tip displacement per unit force [m/N], L^3/(3 EI), of a beam clamped at s = 0 and free at s = L."""
-        ends = " and ".join(self.supports)
-        require(ends == "clamped and free", f"static_compliance is for supports clamped and free, not {ends}")
-        return self.length**3 / (3.0 * self.bending_stiffness)
+            require(free or not value, name, f"is {value} {unit}; {words}")
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -142,7 +135,7 @@ def frequency_function(beam: UniformBeam, beta_length: ArrayLike) -> Array:
     require_kind("beam", beam, UniformBeam, "a UniformBeam")
     values = require_array("beta_length", beta_length, "[1]", words="positive numbers")
     least = values.min(initial=np.inf)
-    require(least > 0.0, f"beta_length holds {least:g} [1]; every entry must be positive")
+    require(least > 0.0, "beta_length", f"holds {least:g} [1]; every entry must be positive")
     return np.linalg.det(_rows(beam, values))
 
 
@@ -153,11 +146,7 @@ def exact_modes(beam: UniformBeam, count: int) -> ExactModes:
     grid = np.arange(SCAN_START, (count + 3) * math.pi, SCAN_STEP)
     values = frequency_function(beam, grid)
     left = np.flatnonzero(np.sign(values[:-1]) * np.sign(values[1:]) < 0.0)[:count]
-
-    def determinant(x: float) -> float:
-        return float(frequency_function(beam, x))
-
-    roots = np.array([brentq(determinant, grid[i], grid[i + 1], xtol=1e-14) for i in left])
+    roots = np.array([brentq(partial(frequency_function, beam), *grid[i : i + 2], xtol=1e-14) for i in left])
     nulls = np.array([np.linalg.svd(_rows(beam, root))[2][-1] for root in roots])
     raw = ExactModes(beam=beam, wave_numbers=roots / beam.length, coefficients=nulls)
     x, weight = np.polynomial.legendre.leggauss(POINTS_PER_HALF_WAVE)

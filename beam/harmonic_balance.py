@@ -157,7 +157,7 @@ def periodic_motion(
     """
     require_kind("model", model, FiniteRotation, "a FiniteRotation")
     size = require_within("amplitude", amplitude, "m")
-    require(size != 0.0, f"amplitude is {amplitude} m; it must be finite and not zero")
+    require(size != 0.0, "amplitude", f"is {amplitude} m; it must be finite and not zero")
     most = require_whole("harmonics", harmonics, "[1]", low=1)
     omega, shape = model.first_mode
     parts = np.zeros((2 * most + 1, model.linear.tip.size), dtype=complex)

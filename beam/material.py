@@ -32,12 +32,10 @@ class Material:
 
     Parameters
     ----------
-    youngs_modulus : float
-        E [Pa], positive.
+    youngs_modulus, density : float
+        E [Pa] and rho [kg/m^3], positive.
     poissons_ratio : float
         nu [1], between -1 and 1/2.
-    density : float
-        rho [kg/m^3], positive.
     loss_factor : float
         eta [1], not negative.
 

@@ -15,10 +15,12 @@ and phi' = V^T phi, Gamma' = V^T (Gamma + m phi).  T and the decay rates are kep
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from scipy.linalg import eigh
 
-from .modal_model import UNITS, ModalChange, ModalModel
+from .modal_model import ModalChange, ModalModel, Point
 from .parameters import Array, require, require_kind, require_whole, require_within
 
 
@@ -29,7 +31,7 @@ def free_period_change(model: ModalModel) -> ModalChange:
     """
     omega, rates, k = _frequencies(model)
     change = -omega / omega[k] ** 2 * (2.0 * np.pi) ** 2 / model.free_period**3
-    return _with_fixed_shapes(change, 0.0 * rates)
+    return ModalChange(omega=change, decay_rate=0.0 * rates, phi=0.0 * change, participation=0.0 * change)
 
 
 def decay_rate_change(model: ModalModel, mode: int | None = 0) -> ModalChange:
@@ -44,7 +46,8 @@ def decay_rate_change(model: ModalModel, mode: int | None = 0) -> ModalChange:
         change = scaled
     else:
         change = np.eye(model.n_modes)[require_whole("mode", mode, "[1]", low=0, high=model.n_modes - 1)]
-    return _with_fixed_shapes(0.25 * rates[k] * change[k] * omega / omega[k] ** 2, change)
+    moved = 0.25 * rates[k] * change[k] * omega / omega[k] ** 2
+    return ModalChange(omega=moved, decay_rate=change, phi=0.0 * moved, participation=0.0 * moved)
 
 
 def tip_mass_change(model: ModalModel) -> ModalChange:
@@ -55,7 +58,7 @@ def tip_mass_change(model: ModalModel) -> ModalChange:
     omega, rates, lead = _frequencies(model)
     phi, gamma, square = model.phi, model.participation, omega**2
     apart = square[:, None] - square + np.diag(square)
-    require(bool(np.all(apart[:, phi != 0.0])), f"omega is {omega} rad/s; no two frequencies may be equal")
+    require(bool(np.all(apart[:, phi != 0.0])), "omega", f"is {omega} rad/s; no two frequencies may be equal")
     mixed = np.outer(phi, square * phi) / np.where(apart, apart, 1.0)  # of e_j in mode k, to first order
     np.fill_diagonal(mixed, -0.5 * phi**2)
     change = -0.5 * phi**2 * omega
@@ -70,7 +73,7 @@ def tip_mass_change(model: ModalModel) -> ModalChange:
 def with_tip_mass(model: ModalModel, mass: float) -> ModalModel:
     """Return `model` with another mass at its tip [kg], above zero; its modes span the motion.
 
-    The free period T, the decay rates and the signs of `phi` are kept. The read-outs follow the modes.
+    The free period T, the decay rates and the signs of `phi` are kept, and the masses of other points.
 
     Raises
     ------
@@ -78,28 +81,28 @@ def with_tip_mass(model: ModalModel, mass: float) -> ModalModel:
         If the model has no tip mass, or the modes cannot do with so much less of it.
     """
     omega, _rates, lead = _frequencies(model)
-    require(bool(model.tip_mass), f"tip_mass is {model.tip_mass} kg; the model must have one, above zero")
+    require(bool(model.tip_mass), "tip_mass", f"is {model.tip_mass} kg; the model must have one, above zero")
     added = require_within("mass", mass, "kg", above=0) - float(model.tip_mass or 0.0)
     left = 1.0 + added * float(model.phi @ model.phi)
-    require(left > 0.0, f"mass is {mass} kg; with phi = {model.phi} that leaves a mode less than no mass")
+    require(left > 0.0, "mass", f"is {mass} kg; with phi = {model.phi} that leaves a mode less than no mass")
     inertia = np.eye(model.n_modes) + added * np.outer(model.phi, model.phi)
     found, shapes = eigh(np.diag(omega**2), inertia)
     place = np.argsort(np.argsort(omega))  # one more mass moves no frequency beyond the next
     shapes, paces = shapes[:, place], np.sqrt(np.maximum(found[place], 0.0))
     shapes = shapes * np.where(model.phi * (model.phi @ shapes) < 0.0, -1.0, 1.0)
     scale = omega[lead] / paces[lead]
-    compliance = model.static_compliance
-    rows = (
-        paces * scale,
-        model.decay_rate,
-        model.phi @ shapes,
-        (model.participation + added * model.phi) @ shapes,
-    )
+    points = dict[str, Point]()
+    for name, point in model.points.items():
+        compliance = point.static_compliance and point.static_compliance / scale**2
+        points[name] = replace(point, row=point.row @ shapes, static_compliance=compliance)
     return ModalModel(
-        **dict(zip(UNITS, rows, strict=True)),
-        static_compliance=None if compliance is None else float(compliance) / scale**2,
+        omega=paces * scale,
+        decay_rate=model.decay_rate,
+        phi=points["tip"].row,
+        participation=(model.participation + added * model.phi) @ shapes,
+        static_compliance=points["tip"].static_compliance,
         tip_mass=float(mass),
-        readouts={name: row @ shapes for name, row in model.readouts.items()},
+        points=points,
     )
 
 
@@ -107,8 +110,3 @@ def _frequencies(model: ModalModel) -> tuple[Array, Array, int]:
     """Return omega [rad/s], the decay rates [1/s], and the index of mode 1 in them."""
     require_kind("model", model, ModalModel, "a ModalModel")
     return model.omega, model.decay_rate, model.leading_mode
-
-
-def _with_fixed_shapes(omega: Array, rates: Array) -> ModalChange:
-    """Return the change of these frequencies and rates, with phi and participation fixed."""
-    return ModalChange(omega=omega, decay_rate=rates, phi=0.0 * omega, participation=0.0 * omega)

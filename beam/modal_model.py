@@ -51,10 +51,29 @@ STILL = 1e-9
 """Frequency that replaces zero where modes are compared [rad/s]; rounding of phi over it is still small."""
 
 
-class _OfPoint(float):
-    """A number of the tip, with the `phi` that it was given with; `replace` hands on both."""
+@final
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Point:
+    """A place of a structure, as its modes and its statics see it.
 
-    phi: NDArray[np.float64]
+    Parameters
+    ----------
+    row : array_like, shape (n_modes,)
+        Values of the mass-normalised shapes there [kg^(-1/2), rotations kg^(-1/2) m^(-1)]. The motion of the
+        place, relative to the base, is ``row @ q``.
+    static_compliance : float, optional
+        Displacement per unit static force at the place, all modes of the structure included [m/N].
+    mass : float, optional
+        Lumped mass at the place [kg], the limit of 1 / sum row^2.
+    """
+
+    row: NDArray[np.float64]
+    static_compliance: float | None = None
+    mass: float | None = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "row", _row("row", self.row, "kg^(-1/2)"))
+        _check_statics(self, static_compliance="m/N", mass="kg")
 
 
 @final
@@ -74,13 +93,10 @@ class ModalModel:
         Mass-normalised tip values in the drive direction [kg^(-1/2)].
     participation : array_like, shape (n_modes,)
         Participation in a base motion along the drive direction [kg^(1/2)].
-    static_compliance : float, optional
-        Tip displacement per unit static tip force of the whole structure, all modes included [m/N].
-    tip_mass : float, optional
-        Lumped mass at the tip [kg], the limit of 1 / sum phi_k^2. With another `phi` give both anew.
-    readouts : mapping of str to array_like, shape (n_modes,), optional
-        Values of the mode shapes at named points, in the units of phi for displacements. The motion measured
-        there, relative to the base, is ``readouts[name] @ q``.
+    static_compliance, tip_mass : float, optional
+        Compliance [m/N] and mass [kg] of the tip, see `Point`. With another `phi` give both anew.
+    points : mapping of str to Point, optional
+        Further places by name. "tip", made of `phi` and the two numbers above, is always among them.
 
     Warns
     -----
@@ -94,32 +110,31 @@ class ModalModel:
     participation: NDArray[np.float64]
     static_compliance: float | None = None
     tip_mass: float | None = None
-    readouts: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
+    points: Mapping[str, Point] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         rows = {name: _row(name, getattr(self, name), unit) for name, unit in UNITS.items()}
         omega = rows["omega"]
         for name in ("omega", "decay_rate"):
             least = rows[name].min()
-            require(least >= 0.0, f"{name} holds {least} {UNITS[name]}; no entry may be negative")
-        require_kind("readouts", self.readouts, Mapping, "a mapping of names to rows of numbers")
-        given = self.readouts.items()
-        readouts = {name: _row(f"readouts[{name!r}]", row, "kg^(-1/2)") for name, row in given}
-        for name, row in (rows | readouts).items():
-            words = f"it must have the shape {omega.shape} of omega"
-            require(row.shape == omega.shape, f"{name} has shape {row.shape}; {words}")
+            require(least >= 0.0, name, f"holds {least} {UNITS[name]}; no entry may be negative")
+        vars(self).update(rows)
+        points = dict(require_kind("points", self.points, Mapping, "a mapping of names to Point"))
+        for name, point in points.items():
+            require_kind(f"points[{name!r}]", point, Point, "a Point")
+        old = points.pop("tip", None)
+        rows |= {f"points[{name!r}]": point.row for name, point in points.items()}
         for name, row in rows.items():
-            object.__setattr__(self, name, row)
-        object.__setattr__(self, "readouts", readouts)
-        for name, unit in (("static_compliance", "m/N"), ("tip_mass", "kg")):
-            value = getattr(self, name)
-            if value is not None:
-                number = _OfPoint(require_within(name, value, unit, low=0))
-                pairs = zip(getattr(value, "phi", self.phi), self.phi, strict=False)
-                words = "which belongs to another phi; it must be given for this phi, or None"
-                require(all(abs(a) == abs(b) for a, b in pairs), f"{name} is {value} {unit}, {words}")
-                number.phi = self.phi
-                object.__setattr__(self, name, number)
+            words = f"it must have the shape {omega.shape} of omega"
+            require(row.shape == omega.shape, name, f"has shape {row.shape}; {words}")
+        _check_statics(self, static_compliance="m/N", tip_mass="kg")
+        tip = Point(row=self.phi, static_compliance=self.static_compliance, mass=self.tip_mass)
+        vars(self).update(points=points | {"tip": tip})
+        if old is not None and any(abs(a) != abs(b) for a, b in zip(old.row, tip.row, strict=False)):
+            words = "which belongs to another phi; it must be given for this phi, or None"
+            c, m = tip.static_compliance, tip.mass
+            require(c is None or c != old.static_compliance, "static_compliance", f"is {c} m/N, {words}")
+            require(m is None or m != old.mass, "tip_mass", f"is {m} kg, {words}")
         lowest = int(np.argmin(np.where(omega > 0.0, omega, np.inf)))
         ratio = 0.5 * self.decay_rate[lowest] / omega[lowest] if omega[lowest] > 0.0 else 0.0
         if ratio > GREATEST_RATIO:
@@ -154,8 +169,8 @@ class ModalModel:
     def truncated(self, count: int) -> ModalModel:
         """Return the same structure with its first `count` modes only, 1 <= count <= n_modes."""
         count = require_whole("count", count, "modes", high=self.n_modes, why=", the modes of the model")
-        readouts = {name: row[:count] for name, row in self.readouts.items()}
-        return replace(self, **{name: getattr(self, name)[:count] for name in UNITS}, readouts=readouts)
+        points = {name: replace(point, row=point.row[:count]) for name, point in self.points.items()}
+        return replace(self, **{name: getattr(self, name)[:count] for name in UNITS}, points=points)
 
     def with_residual_mode(self) -> ModalModel:
         """Return the model with one more mode, which replaces all modes left out.
@@ -166,7 +181,7 @@ class ModalModel:
             Gamma phi = 1 - sum Gamma_k phi_k.
 
         The static compliance C and the tip mass M, which an instant impact meets, are then exact. The mode
-        takes the damping ratio of the highest mode and does not enter the read-outs.
+        takes the damping ratio of the highest mode and moves no point but the tip.
 
         Raises
         ------
@@ -175,7 +190,7 @@ class ModalModel:
         """
         for name, unit in (("static_compliance", "m/N"), ("tip_mass", "kg")):
             value = getattr(self, name)
-            require(bool(value), f"{name} is {value} {unit}; the residual mode needs it, above zero")
+            require(bool(value), name, f"is {value} {unit}; the residual mode needs it, above zero")
         assert self.static_compliance is not None and self.tip_mass is not None
         oscillating = self.omega > 0.0
         squares = np.where(oscillating, self.omega, 1.0) ** 2
@@ -194,7 +209,7 @@ class ModalModel:
             decay_rate=np.append(self.decay_rate, ratio * omega),
             phi=np.append(self.phi, phi),
             participation=np.append(self.participation, participation),
-            readouts={name: np.append(row, 0.0) for name, row in self.readouts.items()},
+            points={n: replace(p, row=np.append(p.row, phi * (n == "tip"))) for n, p in self.points.items()},
         )
 
     def on_exciter(
@@ -209,7 +224,7 @@ class ModalModel:
 
         The stop rides on the base, so that the contact force acts on q alone. `participation` then refers to
         a force on the base that would move a free mass m as the drive moves the base. Damping stays modal;
-        static compliance, tip mass and read-outs are dropped.
+        static compliance, tip mass and further points are dropped.
 
         This model's modes must belong to a fixed base. If mode 1 was `measured_on_it`, the mode that moves
         the tip most keeps the frequency and the decay rate of mode 1.
@@ -264,10 +279,17 @@ class ModalChange:
         return self.omega.size
 
 
+def _check_statics(owner: Point | ModalModel, **units: str) -> None:
+    """Store these numbers of the owner as floats; a negative one is refused, None stays."""
+    for name, unit in units.items():
+        if (value := getattr(owner, name)) is not None:
+            object.__setattr__(owner, name, require_within(name, value, unit, low=0))
+
+
 def _row(name: str, values: ArrayLike, unit: str) -> NDArray[np.float64]:
     """Return a read-only float copy of shape (n,), n >= 1, all finite."""
     row = require_array(name, values, unit, dimensions=1, words="one row of numbers")
-    require(row.size > 0, f"{name} has shape {row.shape}; it must be one row of at least one mode [{unit}]")
+    require(row.size > 0, name, f"has shape {row.shape}; it must be one row of at least one mode [{unit}]")
     return row
 
 

@@ -109,9 +109,8 @@ class Modes:
         They are the loss factors of the sections, weighted by their shares of the strain energy of mode k (C.
         D. Johnson and D. A. Kienholz, AIAA J. 20 (1982) 1284).
         """
-        x, stiffness, loss = self.shapes, self.discretization.stiffness, self.discretization.loss_stiffness
-        stored = np.einsum("ik,ik->k", x, stiffness @ x)
-        lost = np.einsum("ik,ik->k", x, loss @ x)
+        x, full = self.shapes, self.discretization
+        stored, lost = (np.einsum("ik,ik->k", x, k @ x) for k in (full.stiffness, full.loss_stiffness))
         return np.divide(lost, stored, out=np.zeros_like(lost), where=self.omega > 0.0)
 
     def displacement_along(self, points_per_element: int = 4) -> ShapesAlong:

@@ -12,6 +12,7 @@ hardly be meant, such as one wrong by a factor of 1000, brings a warning `Suspic
 from __future__ import annotations
 
 import math
+import re
 import sys
 import warnings
 from collections.abc import Iterable
@@ -30,7 +31,19 @@ Class = TypeVar("Class", bound=type)
 
 
 class Refusal(Exception):
-    """Wrong use; the message is one sentence that says what is valid."""
+    """Wrong use; the message is one sentence that says what is valid.
+
+    Its parts are joined to one line: first the wrong argument, perhaps described ("frequency of the drive"),
+    then words, and other arguments and words in turn. A sentence in one part blames no argument.
+    """
+
+    def __str__(self) -> str:
+        return " ".join(" ".join(self.args).split())
+
+    @property
+    def field(self) -> str:
+        """Name of the wrong argument, such as "frequency"; "" if the refusal blames none."""
+        return re.split(r"[^\w.]", self.args[0])[0] if len(self.args) > 1 else ""
 
 
 class InvalidValue(Refusal, ValueError):
@@ -67,10 +80,10 @@ def brief(value: object) -> str:
     return line if len(line) <= LONGEST_SHOWN else line[: LONGEST_SHOWN - 3] + "..."
 
 
-def require(condition: bool, sentence: str) -> None:
-    """Raise InvalidValue with this sentence, put on one line, unless the condition holds."""
+def require(condition: bool, *parts: str) -> None:
+    """Raise InvalidValue with these parts (see `Refusal`) unless the condition holds."""
     if not condition:
-        raise InvalidValue(" ".join(sentence.split()))
+        raise InvalidValue(*parts)
 
 
 def is_number(value: object) -> bool:
@@ -81,11 +94,6 @@ def is_number(value: object) -> bool:
         return math.isfinite(value)
     except OverflowError:  # an integer beyond the range of floats
         return False
-
-
-def is_whole(value: object, low: int) -> bool:
-    """Return whether the value is a whole number, `low` or more; 2.0 is one, True is not."""
-    return is_number(value) and value % 1 == 0 and value >= low  # type: ignore[operator]
 
 
 def require_within(
@@ -99,19 +107,17 @@ def require_within(
     below: float | None = None,
 ) -> float:
     """Return the value as a float, or refuse it unless low <= value <= high and above < value < below."""
-    lower = (low, "{} or more", ge), (above, "above {}", gt)
-    upper = (high, "at most {}", le), (below, "below {}", lt)
-    limits = [(bound, words, holds) for bound, words, holds in lower + upper if bound is not None]
+    ends = (low, "{} or more", ge), (above, "above {}", gt), (high, "at most {}", le), (below, "below {}", lt)
+    limits = [(bound, words, holds) for bound, words, holds in ends if bound is not None]
     valid = " and ".join(words.format(f"{bound:g}" if bound else "zero") for bound, words, _ in limits)
     if low is not None and high is not None:
         valid = f"between {low:g} and {high:g}"
     elif len(limits) < 2:
         valid = f"finite and {valid}" if limits else "finite"
-    if isinstance(value, bool) or not isinstance(value, Real):
-        raise InvalidType(f"{name} is {shown(value)}; it must be a number in {unit}, {valid}")
-    if not (is_number(value) and all(holds(float(value), bound) for bound, _, holds in limits)):
-        raise InvalidValue(f"{name} is {shown(value)} {unit}; it must be {valid}")
-    return float(value)
+    given: float = require_kind(name, value, Real, f"a number in {unit}, {valid}")
+    if not (is_number(given) and all(holds(float(given), bound) for bound, _, holds in limits)):
+        raise InvalidValue(name, f"is {shown(value)} {unit}; it must be {valid}")
+    return float(given)
 
 
 def require_whole(
@@ -120,11 +126,10 @@ def require_whole(
     """Return the value as an int, if whole and from `low` to `high`; `why` ends the sentence otherwise."""
     least = {0: "zero or more", 1: "one or more"}.get(low, f"{low} or more")
     valid = f"a whole number, {least}" if high is None else f"a whole number between {low} and {high}"
-    if isinstance(value, bool) or not isinstance(value, Real):
-        raise InvalidType(f"{name} is {shown(value)}; it must be {valid}{why}")
-    if not is_whole(value, low) or (high is not None and float(value) > high):
-        raise InvalidValue(f"{name} is {shown(value)} {unit}; it must be {valid}{why}")
-    return int(float(value))
+    given: float = require_kind(name, value, Real, f"{valid}{why}")
+    if not (is_number(given) and given % 1 == 0 and low <= given <= (math.inf if high is None else high)):
+        raise InvalidValue(name, f"is {shown(value)} {unit}; it must be {valid}{why}")
+    return int(float(given))
 
 
 def final(kind: Class) -> Class:
@@ -139,9 +144,9 @@ def final(kind: Class) -> Class:
 
 
 def require_kind(name: str, value: Any, kind: type | tuple[type, ...], words: str) -> Any:
-    """Return the value, or raise InvalidType unless it is of this kind, described by `words`."""
-    if not isinstance(value, kind):
-        raise InvalidType(f"{name} is {shown(value)}; it must be {words}")
+    """Return the value if it is of this kind (no class, and True is no number), or else raise InvalidType."""
+    if not isinstance(value, kind) or isinstance(value, type) or (kind is Real and isinstance(value, bool)):
+        raise InvalidType(name, f"is {shown(value)}; it must be {words}")
     return value
 
 
@@ -166,13 +171,13 @@ def require_array(
     except (TypeError, ValueError):
         given = np.asarray(None)
     if given.dtype.kind not in "iuf":
-        raise InvalidType(f"{name} is {shown(values)}; it must be {words} in {unit}")
+        raise InvalidType(name, f"is {shown(values)}; it must be {words} in {unit}")
     array = np.array(given, dtype=np.float64)
     if (dimensions is not None and array.ndim != dimensions) or (shape is not None and array.shape != shape):
         wanted = f" of shape {shape}" if shape is not None else ""
-        raise InvalidValue(f"{name} has shape {array.shape}; it must be {words} in {unit}{wanted}")
+        raise InvalidValue(name, f"has shape {array.shape}; it must be {words} in {unit}{wanted}")
     if not np.all(np.isfinite(array)):
         found = f"is {shown(values)}" if shape is not None else f"holds {array[~np.isfinite(array)].flat[0]}"
-        raise InvalidValue(f"{name} {found} {unit}; it must be {words}, every entry finite")
+        raise InvalidValue(name, f"{found} {unit}; it must be {words}, every entry finite")
     array.setflags(write=False)
     return array

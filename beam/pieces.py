@@ -137,7 +137,7 @@ def element_counts(elements: int | Sequence[int], pieces: int) -> list[int]:
         for count in (elements if several else [elements] * pieces)  # type: ignore[union-attr,list-item]
     ]
     words = f"it must be a whole number, or one for each of {pieces} pieces"
-    require(len(counts) == pieces, f"elements is {shown(elements)} [1]; {words}")
+    require(len(counts) == pieces, "elements", f"is {shown(elements)} [1]; {words}")
     return counts
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from .damping import Damping, require_rule
-from .modal_model import ModalModel
+from .damping import Damping
+from .modal_model import ModalModel, Point
 from .modes import Modes
 from .parameters import require, require_kind, require_whole
 
@@ -30,11 +30,11 @@ def reduce(modes: Modes, damping: Damping, count: int | None = None) -> ModalMod
         If `modes` holds fewer than `count` such modes.
     """
     require_kind("modes", modes, Modes, "Modes, from natural_modes")
-    require_rule("damping", damping)
+    require_kind("damping", damping, Damping, "a rule for decay rates such as StripDamping()")
     keep = np.flatnonzero(modes.coupled)
     wanted = keep.size if count is None else require_whole("count", count, "modes", low=0)
     words = f"it must lie between 1 and the {keep.size} coupled modes among the {modes.omega.size} computed"
-    require(1 <= wanted <= keep.size, f"count is {wanted} modes; {words} (natural_modes computes more)")
+    require(1 <= wanted <= keep.size, "count", f"is {wanted} modes; {words} (natural_modes computes more)")
     keep = keep[:wanted]
     return ModalModel(
         omega=modes.omega[keep],
@@ -43,5 +43,5 @@ def reduce(modes: Modes, damping: Damping, count: int | None = None) -> ModalMod
         participation=modes.participation[keep],
         static_compliance=modes.discretization.static_compliance(),
         tip_mass=modes.discretization.spring.tip.mass,
-        readouts={name: row[keep] for name, row in modes.readouts.items()},
+        points={name: Point(row=row[keep]) for name, row in modes.readouts.items()},
     )

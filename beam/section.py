@@ -92,8 +92,8 @@ class StripSection:
         require_kind("layer", self.layer, (Layer, type(None)), "a Layer or None")
         require_within("width", self.width, "m", above=0)
         require_within("thickness", self.thickness, "m", above=0)
-        flat = self.thickness <= self.width
-        require(flat, f"thickness is {self.thickness} m; it must not exceed the width {self.width} m")
+        words = f"is {self.thickness} m; it must not exceed the"
+        require(self.thickness <= self.width, "thickness", words, "width", f"{self.width} m")
 
     @property
     def bands(self) -> tuple[tuple[float, float], ...]:

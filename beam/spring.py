@@ -54,7 +54,7 @@ def two_supports(supports: object) -> tuple[Support, Support]:
     """Return the supports at both ends, or raise ValueError unless they are two of the four known."""
     pair = tuple(supports) if isinstance(supports, tuple | list) else ()
     known = len(pair) == 2 and all(isinstance(end, str) and end in HELD for end in pair)
-    require(known, f"supports is {shown(supports)} [no unit]; it must be two of {', '.join(HELD)}")
+    require(known, "supports", f"is {shown(supports)} [no unit]; it must be two of {', '.join(HELD)}")
     return pair[0], pair[1]
 
 
@@ -63,26 +63,19 @@ def check_strip(spring: Any, section: type, axes: int) -> None:
     line = require_kind("centreline", spring.centreline, Centreline, "a Centreline")
     sections = require_each("sections", spring.sections, section, f"one {section.__name__} for each piece")
     count, words = len(line.pieces), f"it needs one for each of {len(line.pieces)} pieces"
-    require(len(sections) == count, f"sections has {len(sections)} entries [no unit]; {words}")
+    require(len(sections) == count, "sections", f"has {len(sections)} entries [no unit]; {words}")
     supports = two_supports(spring.supports)
     require_kind("tip", spring.tip, Tip, "a Tip")
-    check_arc_length("tip_at", spring.tip_at, line)
+    require_within("tip_at", spring.tip_at, "m", low=0, high=line.length * (1.0 + 1e-12))
     for support, end in zip(supports, (0.0, line.length), strict=True):
-        require(
-            not (HELD[support][0] and HELD[support][1]) or abs(spring.tip_at - end) > 1e-9 * line.length,
-            f"tip_at is {spring.tip_at} m, where the strip is {support}; the tip must be able to move",
-        )
+        held = HELD[support][0] and HELD[support][1] and abs(spring.tip_at - end) <= 1e-9 * line.length
+        words = f"is {spring.tip_at} m, where the strip is {support}; the tip must be able to move"
+        require(not held, "tip_at", words)
     require_array("drive", spring.drive, "[1]", shape=(axes,), words=f"a direction of {axes} numbers")
     size = math.hypot(*spring.drive)
-    require(size > 0.0, f"drive is {spring.drive} [1]; it must be finite and of positive length")
+    require(size > 0.0, "drive", f"is {spring.drive} [1]; it must be finite and of positive length")
     vars(spring).update(sections=sections, supports=supports)
     vars(spring).update(drive=tuple(part / size for part in spring.drive))
-
-
-def check_arc_length(name: str, s: float, line: Centreline) -> None:
-    """Raise ValueError unless s [m] is an arc length on the line."""
-    require_within(name, s, "m", low=0)
-    require(s <= line.length * (1.0 + 1e-12), f"{name} is {s} m; it must lie between 0 and {line.length} m")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -91,10 +84,8 @@ class Tip:
 
     Parameters
     ----------
-    mass : float
-        Mass of the body [kg], not negative.
-    rotary_inertia : float
-        Moment of inertia about the z axis through the centreline [kg m^2], not negative.
+    mass, rotary_inertia : float
+        Mass [kg], and moment of inertia about the z axis through the centreline [kg m^2], not negative.
     """
 
     mass: float = 0.0
@@ -123,7 +114,7 @@ class Readout:
     def __post_init__(self) -> None:
         require_within("at", self.at, "m", low=0)
         known = self.quantity in ("displacement", "rotation")
-        require(known, f"quantity is {self.quantity!r} [no unit]; valid: 'displacement', 'rotation'")
+        require(known, "quantity", f"is {self.quantity!r} [no unit]; valid: 'displacement', 'rotation'")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -171,13 +162,14 @@ class LeafSpring:
     def __post_init__(self) -> None:
         check_strip(self, StripSection, 2)
         require_kind("readouts", self.readouts, Mapping, "a mapping of names to Readout")
+        end = self.centreline.length * (1.0 + 1e-12)
         for name, readout in self.readouts.items():
             require_kind(f"readouts[{name!r}]", readout, Readout, "a Readout")
-            check_arc_length(f"readouts[{name!r}]", readout.at, self.centreline)
+            require_within(f"readouts[{name!r}]", readout.at, "m", low=0, high=end)
         object.__setattr__(self, "readouts", dict(self.readouts))
         for section, piece in zip(self.sections, self.centreline.pieces, strict=True):
-            half, radius = 0.5 * section.total_thickness, getattr(piece, "radius", math.inf)
-            require(radius > half, f"radius is {radius} m; it must be above half the thickness, {half:g} m")
+            half, r = 0.5 * section.total_thickness, getattr(piece, "radius", math.inf)
+            require(r > half, "radius", f"is {r} m; it must be above half the thickness, {half:g} m")
         self._warn()
 
     def _warn(self) -> None:

@@ -35,8 +35,6 @@ def folded_u(
     tip: Tip,
     damped_section: StripSection | None = None,
     damped_span: tuple[float, float] | None = None,
-    supports: tuple[Support, Support] = ("clamped", "clamped"),
-    drive: tuple[float, float] = (0.0, 1.0),
     readouts: Mapping[str, Readout] | None = None,
 ) -> LeafSpring:
     """Return a strip folded into a U, the tip in the middle of the bend.
@@ -50,9 +48,6 @@ def folded_u(
     tip : Tip
     damped_span : tuple of two floats, optional
         Start and end of the layer on each leg, measured from the supports [m]; the whole leg by default.
-    supports : tuple of two supports
-    drive : tuple of two floats
-        Direction (x, y) [1]: (0, 1) is sway, (1, 0) is along the legs.
     readouts : mapping of str to Readout, optional
     """
     leg, sections = _leg(leg_length, section, damped_section, damped_span)
@@ -62,10 +57,9 @@ def folded_u(
     return LeafSpring(
         centreline=Centreline(pieces=(*leg, bend, *reversed(leg)), start=(0.0, -bend_radius)),
         sections=(*sections, section, *reversed(sections)),
-        supports=supports,
+        supports=("clamped", "clamped"),
         tip=tip,
         tip_at=leg_length + 0.5 * math.pi * bend_radius,
-        drive=drive,
         readouts=readouts or {},
     )
 
@@ -93,26 +87,21 @@ def flat_u(
         As for `folded_u`.
     """
     width = require_kind("section", section, StripSection, "a StripSection").width
-    radius = require_within("bend_radius", bend_radius, "m")
-    given = f"bend_radius is {radius} m"
-    require(radius > 0.5 * width, f"{given}; it must be above half the width of a leg, {width} m")
-    if radius > width:
-        suspect(f"{given}, above the width of a leg, {width} m; such a bend also twists, unlike a plate")
-
-    def both(leg: StripSection) -> StripSection:
-        return replace(leg, width=2.0 * width, slot=2.0 * radius - width)
-
-    require_kind("damped_section", damped_section, (StripSection, type(None)), "a StripSection or None")
-    damped = None if damped_section is None else both(damped_section)
-    legs, sections = _leg(leg_length, both(section), damped, damped_span)
-    outer = 2.0 * radius + width
-    bend = Straight(length=max(radius, math.pi * radius * width / outer))
+    r = require_within("bend_radius", bend_radius, "m")
+    require(r > 0.5 * width, "bend_radius", f"is {r} m; it must be above half the width of a leg, {width} m")
+    if r > width:
+        words = f"above the width of a leg, {width} m; such a bend also twists, unlike a plate"
+        suspect(f"bend_radius is {r} m, {words}")
+    legs, sections = _leg(leg_length, section, damped_section, damped_span)
+    both = [replace(leg, width=2.0 * width, slot=2.0 * r - width) for leg in sections]
+    outer = 2.0 * r + width
+    bend = Straight(length=max(r, math.pi * r * width / outer))
     return LeafSpring(
         centreline=Centreline(pieces=(*legs, bend)),
-        sections=(*sections, replace(section, width=outer)),
+        sections=(*both, replace(section, width=outer)),
         supports=("clamped", "free"),
         tip=tip,
-        tip_at=leg_length + radius,
+        tip_at=leg_length + r,
         readouts=readouts or {},
     )
 
@@ -170,12 +159,12 @@ def _leg(
     require_within("length of the straight strip or leg", length, "m", above=0)
     require_kind("damped_section", damped, (StripSection, type(None)), "a StripSection or None")
     if damped is None:
-        require(span is None, f"damped_span is {span} m without a damped_section; give both or neither")
+        require(span is None, "damped_span", f"is {span} m without a damped_section; give both or neither")
         return (Straight(length=length),), (bare,)
     ends = (0.0, length) if span is None else span
     start, end = require_array("damped_span", ends, "m", shape=(2,), words="its start and its end").tolist()
     rising = 0.0 <= start < end <= length
-    require(rising, f"damped_span is {span} m; it must increase and lie between 0 and {length} m")
+    require(rising, "damped_span", f"is {span} m; it must increase and lie between 0 and {length} m")
     runs = [(start, bare), (end - start, damped), (length - end, bare)]
     kept = [(Straight(length=run), section) for run, section in runs if run > 0.0]
     return tuple(piece for piece, _ in kept), tuple(section for _, section in kept)

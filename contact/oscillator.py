@@ -94,11 +94,11 @@ class ImpactOscillator:
             object.__setattr__(self, "load", load)
         if self.drive is None:
             return
-        require(self.stop.gap > 0, f"gap is {self.stop.gap} m; a driven spring needs a gap above zero")
-        told = f"frequency of the drive is {self.drive.frequency:g} Hz"
+        require(self.stop.gap > 0, "gap", f"is {self.stop.gap} m; for a driven spring it must be above zero")
+        told = f"is {self.drive.frequency:g} Hz"
         resonant = (omega == self.drive.angular_frequency) & (decay == 0)
         words = "that of an undamped mode; there is no steady motion, so it must differ"
-        require(not np.any(resonant), f"{told}, {words}")
+        require(not np.any(resonant), "frequency of the drive", f"{told}, {words}")
         self._suspect(self.drive)
 
     def _suspect(self, drive: HarmonicDrive) -> None:

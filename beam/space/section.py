@@ -34,7 +34,7 @@ the part 0.63 t/b, since it neglects the two edges of the strip.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 from ..material import Material
@@ -48,18 +48,12 @@ class SpatialSection:
 
     Parameters
     ----------
-    axial_stiffness : float
-        EA [N], positive.
-    in_plane_stiffness, out_of_plane_stiffness, torsional_stiffness : float
-        EI_z, EI_n and GJ [N m^2], positive.
-    mass_per_length : float
-        m [kg/m], positive.
-    polar_inertia : float
-        I [kg m], positive.
-    warping_stiffness : float
-        EG [N m^4], not negative.
-    shear_offset : float
-        a [m], not negative; 0 on an arc.
+    axial_stiffness, in_plane_stiffness, out_of_plane_stiffness, torsional_stiffness : float
+        EA [N], and EI_z, EI_n and GJ [N m^2], positive.
+    mass_per_length, polar_inertia : float
+        m [kg/m] and I [kg m], positive.
+    warping_stiffness, shear_offset : float
+        EG [N m^4] and a [m], not negative; a is 0 on an arc.
     """
 
     axial_stiffness: float
@@ -91,12 +85,25 @@ class SpatialSection:
 
 def upright(section: StripSection) -> SpatialSection:
     """Return the strip with its width out of the plane of the centreline."""
-    return _of_strip(section, upright=True)
+    require_kind("section", section, StripSection, "a StripSection")
+    require(section.slot == 0.0, "slot", f"is {section.slot} m; legs side by side need a strip each here")
+    b, t, m = section.width, section.total_thickness, section.mass_per_length
+    return SpatialSection(
+        axial_stiffness=section.axial_stiffness,
+        in_plane_stiffness=section.bending_stiffness,
+        out_of_plane_stiffness=section.axial_stiffness * b**2 / 12.0,
+        torsional_stiffness=section.torsional_stiffness,
+        mass_per_length=m,
+        polar_inertia=m * (b**2 + t**2) / 12.0,
+        warping_stiffness=section.bending_stiffness * b**2 / 12.0,
+    )
 
 
 def flat(section: StripSection) -> SpatialSection:
     """Return the strip with its width in the plane of the centreline."""
-    return _of_strip(section, upright=False)
+    up = upright(section)
+    easy, stiff = up.in_plane_stiffness, up.out_of_plane_stiffness
+    return replace(up, in_plane_stiffness=stiff, out_of_plane_stiffness=easy)
 
 
 def channel(*, material: Material, width: float, flange: float, thickness: float) -> SpatialSection:
@@ -116,9 +123,8 @@ def channel(*, material: Material, width: float, flange: float, thickness: float
     require_within("width", width, "m", above=0)
     require_within("flange", flange, "m", low=0)
     require_within("thickness", thickness, "m", above=0)
-    words = f"thickness is {thickness} m; it must not exceed half of the width {width} m"
-    require(2.0 * thickness <= width, words)
     b, h, t = width, flange, thickness
+    require(2.0 * t <= b, "thickness", f"is {t} m; it must not exceed half of the width {b} m")
     web, both = b * t, 2.0 * h * t
     area, arm = web + both, 0.5 * (h + t)  # arm: from the middle of the web to the middle of a flange
     centroid = both * arm / area
@@ -136,22 +142,4 @@ def channel(*, material: Material, width: float, flange: float, thickness: float
         polar_inertia=rho * (about_z + about_n),
         warping_stiffness=e * warping,
         shear_offset=3.0 * p**2 / (6.0 * p + c) + centroid,
-    )
-
-
-def _of_strip(section: StripSection, *, upright: bool) -> SpatialSection:
-    """Return the section of a strip with its width out of the plane (`upright`) or in it."""
-    require_kind("section", section, StripSection, "a StripSection")
-    require(section.slot == 0.0, f"slot is {section.slot} m; legs side by side need a strip each here")
-    b, t, m = section.width, section.total_thickness, section.mass_per_length
-    stiffnesses = section.bending_stiffness, section.axial_stiffness * b**2 / 12.0
-    in_plane, out_of_plane = stiffnesses if upright else stiffnesses[::-1]
-    return SpatialSection(
-        axial_stiffness=section.axial_stiffness,
-        in_plane_stiffness=in_plane,
-        out_of_plane_stiffness=out_of_plane,
-        torsional_stiffness=section.torsional_stiffness,
-        mass_per_length=m,
-        polar_inertia=m * (b**2 + t**2) / 12.0,
-        warping_stiffness=section.bending_stiffness * b**2 / 12.0,
     )

@@ -24,15 +24,12 @@ class SpatialSpring:
 
     Parameters
     ----------
-    centreline : Centreline
+    centreline, supports, tip_at
+        As for `beam.LeafSpring`.
     sections : tuple of SpatialSection
         One for each piece of the centreline.
-    supports : tuple of two supports
-        At s = 0 and at the far end: "clamped", "pinned", "guided" or "free".
     tip : Tip
         Its rotary inertia counts about every axis.
-    tip_at : float
-        Arc length where the tip sits [m].
     tip_offset : tuple of three floats
         c, from the centroid of the section there to the tip, along x, y and z [m].
     drive : tuple of three floats
@@ -50,6 +47,6 @@ class SpatialSpring:
     def __post_init__(self) -> None:
         check_strip(self, SpatialSection, 3)
         for section, piece in zip(self.sections, self.centreline.pieces, strict=True):
-            offset = section.shear_offset
-            require(not (offset and piece.curvature), f"shear_offset is {offset} m; on an arc it must be 0")
+            a = section.shear_offset
+            require(not (a and piece.curvature), "shear_offset", f"is {a} m; on an arc it must be 0")
         require_array("tip_offset", self.tip_offset, "m", shape=(3,), words="three finite numbers")

@@ -60,10 +60,10 @@ class StroboscopicMap:
         return self.oscillator.tip(self._displacements(points))
 
     def readout(self, points: np.ndarray, name: str) -> np.ndarray:
-        """The read-out quantity `name` of the model at strobed `points`, shape (n_strobes,)."""
-        readouts = self.oscillator.model.readouts
-        require(name in readouts, f"name is {name!r}; the model has the read-out points {sorted(readouts)}")
-        return self._displacements(points) @ readouts[name]
+        """The motion of the point `name` of the model at strobed `points`, shape (n_strobes,)."""
+        known = self.oscillator.model.points
+        require(name in known, "name", f"is {name!r}; the model has the points {sorted(known)}")
+        return self._displacements(points) @ known[name].row
 
     def _displacements(self, points: np.ndarray) -> np.ndarray:
         """The modal displacements of strobed `points`, shape (n_strobes, n_modes)."""

@@ -139,10 +139,3 @@ def test_scan_misses_no_frequency(mass: float, inertia: float) -> None:
     modes = natural_modes(assemble(cantilever(length=LENGTH, section=STRIP, tip=tip), 60), 12)
     exact = exact_modes(uniform_beam(STRIP, LENGTH, tip), 12)
     np.testing.assert_allclose(modes.omega, exact.omega, rtol=5e-4)
-
-
-def test_places_out_of_range_are_refused() -> None:
-    with pytest.raises(ValueError, match="points_per_element"):
-        natural_modes(assemble(cantilever(length=LENGTH, section=STRIP), 3), 2).displacement_along(0)
-    with pytest.raises(ValueError, match="far"):
-        cantilever(length=LENGTH, section=STRIP, readouts={"far": beam.Readout(at=0.2)})

@@ -4,7 +4,6 @@ import math
 from itertools import pairwise
 
 import numpy as np
-import pytest
 
 from beam import Arc, Centreline, Straight
 
@@ -47,8 +46,3 @@ def test_u_comes_back_alongside() -> None:
     np.testing.assert_allclose(u.points(0.5 * u.length), [0.1375, 0.0075, 0.0], atol=1e-16)
     assert u.points(np.zeros((2, 3))).shape == (2, 3, 3)
     assert not u.is_straight
-
-
-def test_a_point_off_the_curve_is_refused() -> None:
-    with pytest.raises(ValueError, match="0 and"):
-        WINDING.points(0.2)

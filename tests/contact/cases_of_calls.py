@@ -49,7 +49,7 @@ def oscillator_of(law: contact.ContactLaw, modes: int) -> contact.ImpactOscillat
     gamma = 1.0 / (1.0 + 2.3 * k) / phi[0]
     several = modes_on_stop(omega, 0.02 * omega, phi, gamma, law=law, gap=GAP, drive=22.2)
     plain = several if modes > 1 else equation_1(22.2, law, gap=GAP)
-    return replace(plain, model=replace(plain.model, readouts={"laser": plain.model.phi}))
+    return replace(plain, model=replace(plain.model, points={"laser": plain.model.points["tip"]}))
 
 
 @dataclass(frozen=True)

@@ -119,7 +119,7 @@ def test_the_model_keeps_the_coupled_modes_only():
 def test_every_kind_of_spring_makes_a_model_with_a_readout():
     for kind in ("flat_u", "folded_u", "cantilever", "straight_strip"):
         model = model_of(LETTER.replace({**COARSE, "spring.kind": kind}))
-        assert model.n_modes == 4 and model.readouts[READOUT].shape == (4,)
+        assert model.n_modes == 4 and model.points[READOUT].row.shape == (4,)
     data = {
         "frequencies_hz": [150.0, 24.5],
         "decay_rates_per_s": [20.0, 3.5],
@@ -130,20 +130,20 @@ def test_every_kind_of_spring_makes_a_model_with_a_readout():
     measured = LETTER.replace({"spring.kind": "modal_data", **lists})
     model = model_of(measured)
     np.testing.assert_allclose(model.frequencies_hz, [24.5, 150.0])
-    np.testing.assert_array_equal(model.readouts[READOUT], [8.0, 5.0])
+    np.testing.assert_array_equal(model.points[READOUT].row, [8.0, 5.0])
     with pytest.raises(SceneError, match="without their shapes"):
         scenes.spring_of(measured)
     single = scenes.single_mode_of(LETTER)
-    assert single.readouts[READOUT].tolist() == [1.0] == single.phi.tolist()
+    assert single.points[READOUT].row.tolist() == [1.0] == single.phi.tolist()
 
 
 def test_the_readout_sees_the_ball_where_the_ball_is_and_rotation_where_it_is_asked_for():
     for scene, place in ((LETTER, 1.0), (FOLDED, 0.5)):
         at_ball = model_of(scene.replace({**COARSE, "readout.arc_fraction": place}))
-        np.testing.assert_allclose(at_ball.readouts[READOUT], at_ball.phi, rtol=1e-9)
+        np.testing.assert_allclose(at_ball.points[READOUT].row, at_ball.phi, rtol=1e-9)
     turn = {"readout.arc_fraction": 1.0, "readout.quantity": "rotation"}
     model = model_of(LETTER.replace({**COARSE, "spring.kind": "cantilever", "tip.mass_kg": 0.0, **turn}))
-    assert model.readouts[READOUT][0] / model.phi[0] == pytest.approx(1.37650543 / 0.13, rel=1e-6)
+    assert model.points[READOUT].row[0] / model.phi[0] == pytest.approx(1.37650543 / 0.13, rel=1e-6)
 
 
 def test_a_mode_number_beyond_the_mesh_is_refused():

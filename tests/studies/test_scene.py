@@ -137,6 +137,22 @@ def test_a_wrong_value_is_refused_with_its_key(override):
     assert key in refusal(override)
 
 
+def test_a_refusal_gets_the_key_of_its_field():
+    scene = Scene().replace({"spring.tape_thickness_m": 0.0, "spring.width_m": 1e-4})
+    sheet = {"width": "spring.width_m", "thickness": "spring.thickness_m"}
+    for made, keys in ((beam.StripSection, sheet), (beam.Layer, {"thickness": "spring.tape_thickness_m"})):
+        with pytest.raises(SceneError) as caught:
+            scene.make(made, keys, material=beam.BRASS)
+        for error, field in ((caught.value, keys["thickness"]), (caught.value.__cause__, "thickness")):
+            again = pickle.loads(pickle.dumps(error))
+            assert again.field == field and str(again) == str(error) and str(error).startswith(f"{field} is ")
+
+
+def test_a_bug_of_a_constructor_passes_as_itself():
+    with pytest.raises(TypeError, match="unsupported operand"):
+        Scene().make(lambda thickness: thickness + "m", {"thickness": "spring.thickness_m"})
+
+
 @pytest.mark.parametrize(
     ("overrides", "named"),
     [

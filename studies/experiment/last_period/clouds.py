@@ -122,7 +122,7 @@ def _in_noise(noise: DriveNoise, strobed: StroboscopicMap, m: int) -> tuple[floa
     low = born(strobed, noise.stability).end
     lower = strobed.at(noise.stability).orbit(low, factors.size, factors=factors)
     held = [watched(part, m)[0] > 0.5 for part in np.split(lower.impacts, WAITS)]
-    at_laser = READOUT in strobed.oscillator.model.readouts
+    at_laser = READOUT in strobed.oscillator.model.points
     points = here.readout(run.points, READOUT) if at_laser else here.tip(run.points)
     between, clear = round(apart(points, run.impacts, m), 3), round(separate(points, run.impacts, m), 3)
     return between, clear, float(np.mean(held))

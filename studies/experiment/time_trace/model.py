@@ -100,7 +100,7 @@ def trace_of(oscillator: ImpactOscillator, state: State, length: int) -> Trace:
     return Trace(
         time=time,
         tip=oscillator.tip(run.displacement),
-        readout=run.displacement @ oscillator.model.readouts[READOUT],
+        readout=run.displacement @ oscillator.model.points[READOUT].row,
         impact_times=touches - begin,
         collisions=[collision for collision in final if collision.first_touch < begin + span],
     )

@@ -25,12 +25,11 @@ class SceneError(InvalidValue):
 
 
 def shown(value: object) -> str:
-    """The value as part of a sentence: one line of at most 60 characters."""
+    """The value as part of a sentence, at most 60 characters."""
     try:
         text = repr(list(value)) if isinstance(value, tuple) else repr(value)
     except ValueError:  # an integer with more digits than the interpreter is willing to print
         text = "a very large number"
-    text = "".join(character if character.isprintable() else "?" for character in text)
     return text if len(text) <= 60 else text[:57] + "..."
 
 
@@ -82,7 +81,7 @@ class Key:
             if isinstance(self.default, int) and found is not None:
                 found = int(found) if found % 1 == 0 else None
         if found is None:
-            raise SceneError(f"{name} must be {self.valid()}, not {shown(value)}")
+            raise SceneError(name, f"must be {self.valid()}, not {shown(value)}")
         return found
 
     def _number(self, value: object) -> float | None:

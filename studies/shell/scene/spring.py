@@ -83,9 +83,8 @@ def spring_of(scene: Scene) -> LeafSpring:
     """The leaf spring with its read-out; SceneError for spring.kind modal_data, which has no shape."""
     keys, tip = scene.spring, scene.tip
     if keys.kind == "modal_data":
-        raise SceneError(
-            "spring.kind modal_data gives modes without their shapes: this needs a spring that is drawn"
-        )
+        words = "modal_data gives modes without their shapes: this needs a spring that is drawn"
+        raise SceneError("spring.kind", words)
     bare, taped = sections_of(scene)
     leg = keys.leg_length_m
     ball = scene.make(beam.Tip, {"mass": "tip.mass_kg", "rotary_inertia": "tip.rotary_inertia_kg_m2"})
@@ -153,10 +152,8 @@ def modes_of(scene: Scene, count: int | None = None) -> Modes:
         modes,
         omega=np.where(omega > 0.0, np.sqrt(2.0 * energies), 0.0),
         shapes=shapes,
-        phi=modes.phi[:count],
-        participation=modes.participation[:count],
-        coupled=modes.coupled[:count],
         readouts={name: row[:count] for name, row in modes.readouts.items()},
+        **{name: getattr(modes, name)[:count] for name in ("phi", "participation", "coupled")},
     )
 
 
@@ -188,7 +185,7 @@ def model_of(scene: Scene) -> ModalModel:
         participation=participation,
         static_compliance=data.static_compliance_m_per_n or None,
         tip_mass=data.tip_mass_kg or None,
-        readouts={READOUT: tip_values},
+        points={READOUT: beam.Point(row=tip_values)},
     )
 
 
@@ -196,10 +193,10 @@ def require_drive_below(scene: Scene, model: ModalModel, frequency: float | None
     """SceneError if a drive frequency, or `frequency` [Hz], lies above the highest mode of the model."""
     fastest, highest = frequency or max(scene.drive.frequencies_hz), float(model.frequencies_hz.max())
     if scene.drive.kind == "harmonic" and fastest > highest:
-        raise SceneError(
-            f"drive.frequencies_hz has {fastest:g} Hz, above the highest of the modes kept ({highest:.6g} "
-            "Hz): drive more slowly or raise modes.count"
+        words = (
+            f"above the highest of the modes kept ({highest:.6g} Hz): drive more slowly or raise modes.count"
         )
+        raise SceneError("drive.frequencies_hz", f"has {fastest:g} Hz, {words}")
 
 
 def backbone_of(scene: Scene) -> beam.Backbone:
@@ -226,7 +223,7 @@ def single_mode_of(scene: Scene) -> ModalModel:
         given, valid = shown(scene.single_mode.free_period_s), f"at least {SHORTEST:g} (unit s)"
         raise SceneError(f"{keys['free_period']} must be {valid}, or -1 for that of mode 1, not {given}")
     model = scene.make(beam.single_mode, keys)
-    return dataclasses.replace(model, readouts={READOUT: model.phi})
+    return dataclasses.replace(model, points={READOUT: model.points["tip"]})
 
 
 def first_mode(scene: Scene) -> tuple[float, float]:
@@ -260,9 +257,8 @@ def with_first_mode(scene: Scene) -> Scene:
         name: float(f"{value:.9g}") for name, value in zip(names, found, strict=True) if scene[name] == OPEN
     }
     if math.isinf(found[0]):
-        raise SceneError(
-            f"mode 1 of the spring does not oscillate: give {names[0]} (unit s) and {names[1]} (unit 1/s)"
-        )
+        both = f"{names[0]} (unit s) and {names[1]} (unit 1/s)"
+        raise SceneError(f"mode 1 of the spring does not oscillate: give {both}")
     return scene.replace(values, provenance="mode 1")
 
 

@@ -14,7 +14,6 @@ from __future__ import annotations
 import dataclasses
 import json
 import math
-import re
 import tomllib
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
@@ -23,6 +22,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
 
+from beam import Refusal
 from studies.shell.scene import keys as scene_keys
 from studies.shell.scene.key import GIVEN, LETTER, Key, SceneError, Value, shown
 from studies.shell.scene.keys import MODE_LISTS
@@ -76,15 +76,15 @@ class Scene:
     def make(self, constructor: Callable[..., T], keys: Mapping[str, str], **others: object) -> T:
         """What `constructor` makes of the values of `keys`, argument -> dotted key, and of `others`.
 
-        What it refuses is a SceneError with the key in place of the argument's name; so named are also
-        arguments that are in both.
+        A Refusal becomes a SceneError with the keys in place of the arguments' names; so named are also
+        arguments that are in both. Any other error is a bug and passes.
         """
         own = {name: self[key] for name, key in keys.items() if name not in others}
         try:
             return constructor(**own, **others)
-        except (TypeError, ValueError) as error:
-            pattern = rf"\b({'|'.join(keys) or '(?!)'})\b( of the [a-z ]+?(?= is | holds ))?"
-            raise SceneError(re.sub(pattern, lambda found: keys[found[1]], str(error))) from error
+        except Refusal as error:
+            first, *parts = (keys.get(part, part) for part in error.args)
+            raise SceneError(keys.get(error.field, first), *parts) from error
 
     def values(self) -> dict[str, dict[str, object]]:
         """Nested plain values, section -> key -> value, as a file holds them."""

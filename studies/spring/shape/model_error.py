@@ -17,7 +17,7 @@ from typing import Annotated
 import numpy as np
 import skfem as sk
 
-from beam import ModalModel, Tip
+from beam import ModalModel, Point, Tip
 from contact import StroboscopicMap
 from studies.physics.descriptions import born_and_lowered
 from studies.shell.scene import READOUT, Scene, beam_at, sections_of
@@ -88,7 +88,7 @@ def models_of(plates: Mapping[str, PlateModes], beam: ModalModel) -> dict[str, M
             decay_rate=np.interp(omega, beam.omega, beam.decay_rate),
             phi=modes.phi,
             participation=modes.participation,
-            readouts={READOUT: modes.phi},
+            points={READOUT: Point(row=modes.phi)},
         )
     return found
 
