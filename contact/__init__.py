@@ -70,14 +70,7 @@ from contact.errors import (
     StepTooLarge,
     UnresolvedCrossing,
 )
-from contact.laws import (
-    ContactLaw,
-    DelayedRestitution,
-    HertzContact,
-    HuntCrossley,
-    LinearContact,
-    NewtonRestitution,
-)
+from contact.laws import ContactLaw, HertzContact, HuntCrossley, LinearContact, NewtonRestitution
 from contact.maps.nonlinear_mode import NonlinearMode
 from contact.maps.nordmark import NordmarkMap
 from contact.maps.nordmark_bands import Band, band
@@ -87,6 +80,7 @@ from contact.orbits.families.single_impact import MaximalFamily, SingleImpactOrb
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.stop import Stop
+from contact.touch.delayed import DelayedRestitution
 from contact.trajectory import ImpactKind, Impacts, Regime, State, Trajectory
 
 __version__ = "0.9.0"

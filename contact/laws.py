@@ -3,33 +3,29 @@
 With the penetration d = x - gap [m] and its rate d' [m/s], the stop pushes the tip back with a force
 -N, N >= 0, that acts only where d > 0.
 
-* Impact laws: ``NewtonRestitution``, velocity of the tip d' -> -e d' at once (letter 1996, below Eq. (1));
-  ``DelayedRestitution``, the same after a time spent on the wall: the letter's "energy loss and time delay"
-  as the two parameters of a single mode.
+* Impact law: ``NewtonRestitution``, velocity of the tip d' -> -e d' at once (letter 1996, below Eq. (1)).
 * Force laws: ``LinearContact``, N = max(0, k d + c d').  With a dashpot (c > 0) the force vanishes before the
   tip has left the wall: the contact lets go inside, and may close again there.  ``HertzContact``, N = k
   d^(3/2) (H. Hertz, J. reine angew. Math. 92 (1882) 156), and ``HuntCrossley``, N = k d^(3/2) (1 + chi d')
   (K. H. Hunt, F. R. E. Crossley, J. Appl. Mech. 42 (1975) 440), which vanishes only at d = 0.
 
 Compiled code sees no objects: a law gives it a small integer, two numbers and a table (`code`, `numbers`,
-`table`).  ``contact.touch`` has the compiled part of each law, and tells how to add one.
+`table`).  ``contact.touch`` has the compiled part of each law, and says how to add one.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass
-from functools import cached_property
-from numbers import Real
-from typing import ClassVar
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar
 
 import numpy as np
 
-from beam.parameters import brief, final, require, require_array, require_kind, require_within, suspect
+from beam.parameters import final, require_within, suspect
 
-NEWTON, LINEAR, HERTZ, DELAYED = 0, 1, 2, 3
-"""Codes of the laws in this file; another law has its code beside its compiled part in ``contact.touch``."""
+NEWTON, LINEAR, HERTZ = 0, 1, 2
+"""Codes of the laws in this file; another law stands with its code and its compiled part in one file of
+``contact.touch``, as ``DelayedRestitution`` does."""
 
 HERTZ_TIME = 0.8 * math.sqrt(math.pi) * 2.0757065006382507
 """Contact time of a free mass under Hertz's law over (greatest approach / approach velocity): 0.8 sqrt(pi)
@@ -77,8 +73,13 @@ class ContactLaw:
 
     @property
     def table(self) -> np.ndarray:
-        """Functions of the approach speed for the kernels, sampled; none for most laws."""
-        return np.empty((5, 0))
+        """More numbers for the kernels, in two dimensions; none for most laws."""
+        return np.empty((0, 0))
+
+    def moved(self: Any, first: float, second: float) -> Any:
+        """The law with its adjustable numbers moved by so much, in their order."""
+        steps = zip(self.units, (first, second), strict=False)
+        return replace(self, **{name: getattr(self, name) + step for name, step in steps})
 
 
 @final
@@ -98,77 +99,6 @@ class NewtonRestitution(ContactLaw):
 
     def __post_init__(self) -> None:
         require_within("local_restitution", self.local_restitution, "[1]", low=0, high=1)
-
-
-SPEEDS = 1025  # samples of a function of the approach speed: a cubic spline over six decades is good to 1e-9
-
-
-@final
-@dataclass(frozen=True, kw_only=True, eq=False)
-class DelayedRestitution(ContactLaw):
-    """The tip stays on the wall for `delay` and leaves with -`restitution` times its approach velocity.
-
-    For one mode only: there the two numbers say all that a collision does.  The wait is kept whatever pulls
-    at the tip.  Without the wall it would be back after 2 v/a, a its deceleration at the touch: a longer wait
-    holds it against that pull and gives the motion energy, so that orbits of period 1 appear far below
-    grazing (stable ones if the wait is long, ``tests/contact/test_delayed_orbits.py``).  With a constant
-    delay every touch slower than a `delay`/2 is of this kind, and one of vanishing speed is no graze; a delay
-    that falls at least as fast as the speed has none.
-
-    Parameters
-    ----------
-    restitution : float or callable
-        From 0 to 1, or a function of the approach speed [m/s] [1].
-    delay : float or callable
-        Zero or more, or a function of the approach speed [m/s] [s].
-    speeds : (float, float)
-        Range of approach speeds in which functions are sampled; beyond it they keep their end values [m/s].
-    """
-
-    restitution: float | Callable[[float], float]
-    delay: float | Callable[[float], float]
-    speeds: tuple[float, float] = (1e-5, 10.0)
-    code: ClassVar[int] = DELAYED
-    one_mode_only: ClassVar[bool] = True
-
-    def __post_init__(self) -> None:
-        words = "two rising numbers above zero"
-        low, high = require_array("speeds", self.speeds, "m/s", shape=(2,), words=words)
-        require(0 < low < high, f"speeds is {brief(self.speeds)} m/s; it must be {words}")
-        for name, unit, high in (("restitution", "[1]", 1.0), ("delay", "s", None)):
-            if not callable(getattr(self, name)):
-                require_within(name, getattr(self, name), unit, low=0, high=high)
-        _v, tau, _slope, delay, _slope2 = self.table
-        words = f"restitution runs from {tau.min()} to {tau.max()}; it must lie between 0 and 1"
-        require(bool(np.all((tau >= 0) & (tau <= 1))), words)
-        words = f"delay runs from {delay.min()} to {delay.max()} s; it must be finite and zero or more"
-        require(bool(np.all(np.isfinite(delay) & (delay >= 0))), words)
-
-    @property
-    def adjustable(self) -> tuple[float, float]:
-        """Restitution [1] and delay [s]; of functions of the speed, their values at the lowest speed."""
-        return float(self.table[1, 0]), float(self.table[3, 0])
-
-    @cached_property
-    def table(self) -> np.ndarray:
-        """Rows: speed, restitution and its slope, delay and its slope; shape (5, n)."""
-        from scipy.interpolate import CubicSpline  # slow to import
-
-        speed = np.geomspace(
-            *self.speeds, SPEEDS if callable(self.restitution) or callable(self.delay) else 2
-        )
-        rows = [speed]
-        for name in ("restitution", "delay"):
-            given = getattr(self, name)
-            if callable(given):
-                at = f"{name} at an approach speed of"
-                found = [require_kind(f"{at} {v:g} m/s", given(float(v)), Real, "a number") for v in speed]
-                values = np.array(found, dtype=float)
-                slopes = CubicSpline(speed, values)(speed, 1) if np.all(np.isfinite(values)) else values
-            else:
-                values, slopes = np.full(speed.size, float(given)), np.zeros(speed.size)
-            rows += [values, slopes]
-        return np.array(rows)
 
 
 @final

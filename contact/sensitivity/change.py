@@ -12,13 +12,14 @@ numbers of the law.  By the chain rule it also depends on p through the steady m
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from beam import ModalChange
+from beam import ModalChange, ModalModel
 from beam.parameters import (
     Array,
     final,
@@ -68,6 +69,19 @@ class Change:
         for name, unit in (("gap", "m"), ("frequency", "Hz"), ("amplitude", "m")):
             require_within(name, getattr(self, name), f"{unit} per unit of the parameter")
         require_array("law", self.law, "its units", shape=(2,), words="two numbers")
+
+    def applied(self, oscillator: ImpactOscillator, step: float) -> ImpactOscillator:
+        """The oscillator with its numbers moved by `step` times this change, statics of the tip left out."""
+
+        def moved(one: Any, *names: str) -> Any:
+            return replace(one, **{name: getattr(one, name) + step * getattr(self, name) for name in names})
+
+        model, law = oscillator.model, oscillator.stop.law.moved(*(step * np.array(self.law)))
+        if self.model is not None:
+            rows = {name: getattr(model, name) + step * getattr(self.model, name) for name in ARRAYS}
+            model = ModalModel(**rows)
+        stop, drive = replace(moved(oscillator.stop, "gap"), law=law), oscillator.driven
+        return replace(oscillator, model=model, stop=stop, drive=moved(drive, "frequency", "amplitude"))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

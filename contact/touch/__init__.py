@@ -56,13 +56,13 @@ import inspect
 from collections.abc import Callable
 from typing import TypeVar
 
-from contact.laws import DELAYED, HERTZ, LINEAR, NEWTON
+from contact.laws import HERTZ, LINEAR, NEWTON
 from contact.machine.compiled import part
 from contact.touch import delayed, hertz, linear, newton
 
 Function = TypeVar("Function", bound=Callable[..., object])
 
-TOUCHES = {NEWTON: newton, DELAYED: delayed, LINEAR: linear, HERTZ: hertz}  # the file of each law
+TOUCHES = {NEWTON: newton, delayed.DELAYED: delayed, LINEAR: linear, HERTZ: hertz}  # the file of each law
 
 COMPILED = "series_size strike step series_variable state work leave force stiffness slopes saltation inside"
 """The compiled functions of a law's file."""

@@ -24,15 +24,105 @@ with the deviation (gap, -tau v) - R (p, r) and comes back with (gap, v) - (p, r
     (I - N R) (p, r) = (gap, v) - N (gap, -tau v),      A(v)^2 = p^2 + (r/(2 pi f))^2.
 """
 
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+from numbers import Real
+from typing import ClassVar
+
 import numpy as np
 
+from beam.parameters import brief, final, require, require_array, require_kind, require_within
 from contact.errors import NotPeriodic
 from contact.flight.modal_flow import free_flow, hold, push_on, tip_state
 from contact.flight.motion import COSINE
 from contact.flight.variation import NUMBER0, NUMBER1, all_tip_changes, tangent_flight
+from contact.laws import ContactLaw
 from contact.machine.compiled import kernel, part
 from contact.touch import newton
 from contact.trajectory import OUTSIDE, WAITING
+
+DELAYED = 3  # the code of this law
+SPEEDS = 1025  # samples of a function of the approach speed: a cubic spline over six decades is good to 1e-9
+
+
+@final
+@dataclass(frozen=True, kw_only=True, eq=False)
+class DelayedRestitution(ContactLaw):
+    """The tip stays on the wall for `delay` and leaves with -`restitution` times its approach velocity.
+
+    For one mode only: there the two numbers say all that a collision does.  The wait is kept whatever pulls
+    at the tip.  Without the wall it would be back after 2 v/a, a its deceleration at the touch: a longer wait
+    holds it against that pull and gives the motion energy, so that orbits of period 1 appear far below
+    grazing (stable ones if the wait is long, ``tests/contact/test_delayed_orbits.py``).  With a constant
+    delay every touch slower than a `delay`/2 is of this kind, and one of vanishing speed is no graze; a delay
+    that falls at least as fast as the speed has none.
+
+    Parameters
+    ----------
+    restitution : float or callable
+        From 0 to 1, or a function of the approach speed [m/s] [1].
+    delay : float or callable
+        Zero or more, or a function of the approach speed [m/s] [s].
+    speeds : (float, float)
+        Range of approach speeds in which functions are sampled; beyond it they keep their end values [m/s].
+    """
+
+    restitution: float | Callable[[float], float]
+    delay: float | Callable[[float], float]
+    speeds: tuple[float, float] = (1e-5, 10.0)
+    code: ClassVar[int] = DELAYED
+    one_mode_only: ClassVar[bool] = True
+
+    def __post_init__(self) -> None:
+        words = "two rising numbers above zero"
+        low, high = require_array("speeds", self.speeds, "m/s", shape=(2,), words=words)
+        require(0 < low < high, f"speeds is {brief(self.speeds)} m/s; it must be {words}")
+        for name, unit, high in (("restitution", "[1]", 1.0), ("delay", "s", None)):
+            if not callable(getattr(self, name)):
+                require_within(name, getattr(self, name), unit, low=0, high=high)
+        _v, tau, _slope, delay, _slope2 = self.table
+        words = f"restitution runs from {tau.min()} to {tau.max()}; it must lie between 0 and 1"
+        require(bool(np.all((tau >= 0) & (tau <= 1))), words)
+        words = f"delay runs from {delay.min()} to {delay.max()} s; it must be finite and zero or more"
+        require(bool(np.all(np.isfinite(delay) & (delay >= 0))), words)
+
+    @property
+    def adjustable(self) -> tuple[float, float]:
+        """Restitution [1] and delay [s]; of functions of the speed, their values at the lowest speed."""
+        return float(self.table[1, 0]), float(self.table[3, 0])
+
+    @cached_property
+    def table(self) -> np.ndarray:
+        """Rows: speed, restitution and its slope, delay and its slope; shape (5, n)."""
+        from scipy.interpolate import CubicSpline  # slow to import
+
+        speed = np.geomspace(
+            *self.speeds, SPEEDS if callable(self.restitution) or callable(self.delay) else 2
+        )
+        rows = [speed]
+        for name in ("restitution", "delay"):
+            given = getattr(self, name)
+            if callable(given):
+                at = f"{name} at an approach speed of"
+                found = [require_kind(f"{at} {v:g} m/s", given(float(v)), Real, "a number") for v in speed]
+                values = np.array(found, dtype=float)
+                slopes = CubicSpline(speed, values)(speed, 1) if np.all(np.isfinite(values)) else values
+            else:
+                values, slopes = np.full(speed.size, float(given)), np.zeros(speed.size)
+            rows += [values, slopes]
+        return np.array(rows)
+
+    def moved(self, first: float, second: float) -> DelayedRestitution:
+        """The law with restitution and delay moved by so much at every speed."""
+        restitution, delay = (
+            (lambda v, one=one, step=step: one(v) + step) if callable(one) else one + step
+            for one, step in ((self.restitution, first), (self.delay, second))
+        )
+        return replace(self, restitution=restitution, delay=delay)
+
 
 LAW, METHOD = "DelayedRestitution", "event-driven"
 REGIMES = (OUTSIDE, WAITING)

@@ -80,21 +80,10 @@ def random_change(oscillator: ImpactOscillator, rng: np.random.Generator) -> Cha
     return Change(
         model=ModalChange(**arrays),
         gap=oscillator.stop.gap * rng.normal(),
-        law=(law.numbers[0] * rng.normal(), law.numbers[1] * rng.normal()),
+        law=tuple((*law.adjustable, 0.0)[:2] * rng.normal(size=2)),
         frequency=oscillator.driven.frequency * rng.normal(),
         amplitude=oscillator.driven.amplitude * rng.normal(),
     )
-
-
-def along(oscillator: ImpactOscillator, change: Change, step: float) -> ImpactOscillator:
-    """The oscillator with its numbers moved by a step along a change."""
-    rows = (getattr(oscillator.model, name) + step * getattr(change.model, name) for name in ARRAYS)
-    drive, law, gap = oscillator.driven, oscillator.stop.law, oscillator.stop.gap + step * change.gap
-    if not isinstance(law, DelayedRestitution):
-        numbers = np.array(law.numbers) + step * np.array(change.law)
-        law = replace(law, **dict(zip(law.units, numbers.tolist(), strict=False)))
-    base = drive.frequency + step * change.frequency, drive.amplitude + step * change.amplitude
-    return modes_on_stop(*rows, law=law, gap=gap, drive=base)
 
 
 class Curve:
@@ -270,7 +259,7 @@ def judged(
 ) -> Iterator[tuple[str, str]]:
     """Kinds of answers of the calls `names`, and what is wrong with each: nothing where it is right; a
     refusal that says why is right too."""
-    by_excess, by_change = family.oscillator.with_excess, partial(along, start.oscillator, change)
+    by_excess, by_change = family.oscillator.with_excess, partial(change.applied, start.oscillator)
     low, at, high, speed = 0.9 * start.excess - 0.1, start.excess, start.excess + 0.1, start.speed
     calls: dict[str, Callable] = {
         "fold_of": lambda: [orbits.fold_of(family, start)],

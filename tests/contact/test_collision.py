@@ -13,10 +13,11 @@ from beam import ModalModel
 from contact import HarmonicDrive, NordmarkMap, Stop, StroboscopicMap
 from contact.collision import before_collision, collisions, first_collision
 from contact.integrators import CentralDifference, Integrator
-from contact.laws import DelayedRestitution, HertzContact
+from contact.laws import HertzContact
 from contact.orbits import KickFamily
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
+from contact.touch.delayed import DelayedRestitution
 from contact.trajectory import ImpactKind, State
 
 

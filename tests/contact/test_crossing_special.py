@@ -10,8 +10,8 @@ from tip_judge import PLANTED, Real, Signal, judge, random_deviation, random_osc
 
 from contact.flight.crossing import CROSSES, FREE, GRAZES, UNRESOLVED
 from contact.flight.elementary import EPS
-from contact.flight.modal_flow import acceleration_rounding, tip_bound, tip_rounding, tip_state
-from contact.touch.newton import newton_impact
+from contact.flight.modal_flow import tip_bound, tip_rounding, tip_state
+from contact.touch.newton import acceleration_rounding, newton_impact
 
 pytestmark = pytest.mark.skipif(
     np.finfo(Real).eps > 2e-19, reason="the judge needs a long double of at least 64 bits"

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from letters_spring import FOLDED_GAP, folded_strip
 from oscillators import MODES, equation_1, many_modes, newton
-from random_families import ARRAYS, along, random_change
+from random_families import ARRAYS, random_change
 from simulated_orbit import DELAYED, EQUATION_1, LAWS, beam, on_stop
 
 import contact
@@ -250,7 +250,7 @@ def test_a_simulated_motion_against_differences(name: str) -> None:
     def observed(step: float) -> list[np.ndarray]:
         q, v = np.stack([start.displacement, start.velocity]) + step * kicked
         moved = contact.State(displacement=q, velocity=v)
-        run = contact.simulate(along(oscillator, change, step), moved, periods=5, times=times)
+        run = contact.simulate(change.applied(oscillator, step), moved, periods=5, times=times)
         pairs = (run.strobe_displacement, run.strobe_velocity), (run.displacement, run.velocity)
         return [run.impacts.start, *(np.hstack(pair) for pair in pairs)]
 
@@ -272,7 +272,7 @@ def test_orbits_and_folds_of_the_letters_spring_under_hertz_against_differences(
     ours = [found.time, found.speed, orbits.excess_derivatives(fold, [change])]
 
     def observed(step: float) -> list:
-        moved = along(orbit.oscillator, change, step)
+        moved = change.applied(orbit.oscillator, step)
         near, beside = Shooting(oscillator=moved, period=5), moved.excess
         there = near.at_excess(beside, orbit)
         return [there.phase, there.speed, fold_of(near, fold).excess]

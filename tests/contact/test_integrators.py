@@ -9,7 +9,8 @@ from oscillators import modes_on_stop
 
 import contact
 from contact.integrators import EXACT_NAMES, INTEGRATORS, Exact, GeneralisedAlpha, Integrator
-from contact.laws import DELAYED, HERTZ, LINEAR, NEWTON
+from contact.laws import HERTZ, LINEAR, NEWTON
+from contact.touch.delayed import DELAYED
 
 LAWS: dict[int, tuple[contact.ContactLaw, ...]] = {
     NEWTON: (contact.NewtonRestitution(local_restitution=0.6),),

@@ -8,8 +8,9 @@ from oscillators import equation_1, modes_on_stop, newton, spring
 from whole_motions import falling_body
 
 from contact.integrators import SampledFlight
-from contact.laws import DelayedRestitution, HertzContact, HuntCrossley, LinearContact, NewtonRestitution
+from contact.laws import HertzContact, HuntCrossley, LinearContact, NewtonRestitution
 from contact.simulation import simulate
+from contact.touch.delayed import DelayedRestitution
 from contact.trajectory import State
 
 LAWS = {

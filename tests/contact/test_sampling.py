@@ -12,8 +12,9 @@ from whole_motions import DASHPOT, HERTZ, LOSSY, SOFTER, falling_body, pressed
 from contact.engine import event_loop
 from contact.errors import ContactError, UnresolvedCrossing
 from contact.integrators import CentralDifference
-from contact.laws import DelayedRestitution, LinearContact, NewtonRestitution
+from contact.laws import LinearContact, NewtonRestitution
 from contact.simulation import simulate
+from contact.touch.delayed import DelayedRestitution
 from contact.trajectory import ImpactKind, Regime, State
 
 TABLE = DelayedRestitution(restitution=lambda v: 0.3 / (1 + v), delay=lambda v: 4e-4 + 1e-4 * v)
