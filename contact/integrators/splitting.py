@@ -55,7 +55,7 @@ from contact.flight.modal_flow import flow_over
 from contact.flight.motion import DAMPED, Motion, motion_of
 from contact.integrators.fixed_step import FixedStep
 from contact.integrators.grid import Grid, first_tangent
-from contact.integrators.splitting_step import Composition, Split, split_steps, sub_flows
+from contact.integrators.splitting_step import Composition, split_steps, sub_flows
 from contact.laws import LinearContact
 
 SEARCH, SEARCH_BEYOND_PI, EACH = 1, 6, 100
@@ -181,7 +181,7 @@ class Splitting(FixedStep):
         rows = tuple(tuple(row) for row in (motion.omega, motion.decay, motion.phi))
         return _limit(rows, self.order, self.step, first_tangent(motion)[1])
 
-    def prepare(self, grid: Grid) -> Split:
+    def prepare(self, grid: Grid) -> tuple[Composition, np.ndarray]:
         """The composition, and its sub-flows over a step."""
         composition = COMPOSITIONS[self.order]
-        return Split(composition, sub_flows(grid.motion, composition, self.step))
+        return composition, sub_flows(grid.motion, composition, self.step)
