@@ -41,10 +41,5 @@ INTEGRATORS: dict[str, type[Integrator]] = {
 }
 """Every method of the package by its name."""
 
-__all__ = [
-    "EXACT_NAMES",
-    "INTEGRATORS",
-    "Integrator",
-    "Run",
-    *sorted({kind.__name__ for kind in INTEGRATORS.values()}),
-]
+__all__ = ["EXACT_NAMES", "INTEGRATORS", "Integrator", "Run"]
+__all__ += sorted({kind.__name__ for kind in INTEGRATORS.values()})

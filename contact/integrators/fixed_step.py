@@ -39,11 +39,10 @@ def _refuse(motion: Motion, run: Run, step: float, critical: float, where: dict[
             "law it must start on the near side"
         )
     stiff, _damping = first_tangent(motion)
-    if critical <= 0.0:
-        raise StepTooLarge(**where, detail=f"step {step:.4g} s: it is unstable even in flight")  # type: ignore[arg-type]
-    if stiff > critical:
-        detail = f"step {step:.4g} s, contact stiffness {stiff:.4g} N/m: it bears {critical:.4g} N/m"
-        raise StepTooLarge(**where, detail=detail)  # type: ignore[arg-type]
+    if critical <= 0.0 or stiff > critical:
+        bears = f"it bears a contact of {critical:.4g} N/m, and the first touch has {stiff:.4g} N/m"
+        bears = "it is unstable even in flight" if critical <= 0.0 else bears
+        raise StepTooLarge(**where, detail=f"step {step:.4g} s: {bears}")  # type: ignore[arg-type]
 
 
 def _merged(recorder: Recorder, run: Run, period: float) -> tuple[Recorder, np.ndarray]:
@@ -55,11 +54,9 @@ def _merged(recorder: Recorder, run: Run, period: float) -> tuple[Recorder, np.n
     wanted = (run.sample_period - run.first) * period + run.sample_clock
     clock = np.concatenate([strobes, wanted, [run.clock + run.length]])
     order = np.argsort(clock, kind="stable")
-    return recorder._replace(
-        sample_period=np.full(clock.size, run.first),
-        sample_clock=clock[order],
-        samples=np.empty((clock.size, recorder.samples.shape[1])),
-    ), np.argsort(order)
+    samples, period_of = np.empty((clock.size, recorder.samples.shape[1])), np.full(clock.size, run.first)
+    merged = recorder._replace(sample_period=period_of, sample_clock=clock[order], samples=samples)
+    return merged, np.argsort(order)
 
 
 def _separated(recorder: Recorder, run: Run, order: np.ndarray, period: float, begun: bool) -> Recorder:
@@ -88,8 +85,7 @@ class FixedStep(Integrator):
     Attributes
     ----------
     laws : tuple of int
-        All laws with a force, by their `force` and `stiffness` in ``contact.touch``; a method by percussions
-        is for Newton's law.
+        All laws with a force, as ``contact.touch`` gives it; methods by percussions take Newton's law alone.
     time_loop : compiled function
         time_loop(grid, prepared) -> status: the method's steps, from grid point progress[0].step to `steps`.
     deviations : bool
@@ -167,11 +163,7 @@ class FixedStep(Integrator):
         touching = forced and recorder.marks[0]["touching"] == 1 and motion.tip(q) > motion.gap
         regime, time = CONTACT if touching else OUTSIDE, run.last * period + run.clock_end
         end = State(displacement=q, velocity=v, time=time, regime=regime)
+        recorder = _separated(recorder, run, order, period, under_way)
         return trajectory_of(
-            _separated(recorder, run, order, period, under_way),
-            run,
-            end,
-            oscillator,
-            evaluations=grid.steps,
-            deviations=self.deviations,
+            recorder, run, end, oscillator, evaluations=grid.steps, deviations=self.deviations
         )

@@ -255,13 +255,8 @@ class GeneralisedAlpha(FixedStep):
     def hht(*, step: float, alpha: float, beyond_limit: bool = False) -> GeneralisedAlpha:
         """The method of Hilber, Hughes and Taylor; `alpha` from 0 to 1/3 is minus that of their paper."""
         require_within("alpha of HHT-alpha, its sign turned,", alpha, "[1]", low=0, high=1.0 / 3.0)
-        return GeneralisedAlpha(
-            step=step,
-            beta=0.25 * (1.0 + alpha) ** 2,
-            gamma=0.5 + alpha,
-            alpha_f=alpha,
-            beyond_limit=beyond_limit,
-        )
+        beta, gamma = 0.25 * (1.0 + alpha) ** 2, 0.5 + alpha
+        return GeneralisedAlpha(step=step, beta=beta, gamma=gamma, alpha_f=alpha, beyond_limit=beyond_limit)
 
     @staticmethod
     def with_dissipation(*, step: float, rho: float, beyond_limit: bool = False) -> GeneralisedAlpha:

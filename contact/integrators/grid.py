@@ -83,9 +83,7 @@ def contact_force(motion, depth, rate):
 @inlined
 def contact_tangent(motion, depth, rate):
     """dN/dd [N/m] and dN/dd' [N s/m], zero off the stop."""
-    if depth <= 0.0:
-        return 0.0, 0.0
-    return touch.stiffness(motion, depth, rate)
+    return touch.stiffness(motion, depth, rate) if depth > 0.0 else (0.0, 0.0)
 
 
 @kernel
@@ -171,10 +169,7 @@ def make_contact_writer(interpolate: Interpolate) -> WriteContact:
         low, high, x, rate = 0.0, 1.0, 0.5, 0.0
         for _ in range(100):
             height, rate = interpolate(grid, method, x, h, False)
-            if (height > 0.0) == (depth > 0.0):
-                high = x
-            else:
-                low = x
+            low, high = (low, x) if (height > 0.0) == (depth > 0.0) else (x, high)
             new = x - height / (rate * h)
             if not low < new < high:
                 new = 0.5 * (low + high)

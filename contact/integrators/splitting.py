@@ -55,7 +55,7 @@ from contact.flight.modal_flow import flow_over
 from contact.flight.motion import DAMPED, Motion, motion_of
 from contact.integrators.fixed_step import FixedStep
 from contact.integrators.grid import Grid, first_tangent
-from contact.integrators.splitting_step import Composition, Split, split_steps, sub_flows
+from contact.integrators.splitting_step import Composition, split_steps, sub_flows
 from contact.laws import LinearContact
 
 SEARCH, SEARCH_BEYOND_PI, EACH = 1, 6, 100
@@ -65,17 +65,15 @@ JUST_BEYOND = 1e-5  # how far beyond a root its instability is looked for, relat
 
 EXCEEDS = 1e-7  # least excess of the spectral radius over one: rounding makes 1e-8 at a double eigenvalue
 
-STRANG = Composition(flows=np.array([1.0]), kicks=np.array([0.5, 0.5]))
-
 _A1, _A2 = 0.245298957184271, 0.604872665711080
 _B0, _B1, _B2 = 0.0829844064174052, 0.3963098014983681, -0.0390563049223486
 _A3, _B3 = 0.5 - (_A1 + _A2), 1.0 - 2.0 * (_B0 + _B1 + _B2)
-BLANES_MOAN = Composition(
-    flows=np.array([_A1, _A2, _A3, _A3, _A2, _A1]), kicks=np.array([_B0, _B1, _B2, _B3, _B2, _B1, _B0])
-)
 
-COMPOSITIONS = {2: STRANG, 4: BLANES_MOAN}
-"""The coefficients of one step by order."""
+COMPOSITIONS = {
+    2: Composition(flows=np.array([1.0]), kicks=np.array([0.5, 0.5])),
+    4: Composition(np.array([_A1, _A2, _A3, _A3, _A2, _A1]), np.array([_B0, _B1, _B2, _B3, _B2, _B1, _B0])),
+}
+"""The coefficients of one step by order: G. Strang; S. Blanes and P. C. Moan."""
 
 
 def step_matrix(
@@ -181,7 +179,7 @@ class Splitting(FixedStep):
         rows = tuple(tuple(row) for row in (motion.omega, motion.decay, motion.phi))
         return _limit(rows, self.order, self.step, first_tangent(motion)[1])
 
-    def prepare(self, grid: Grid) -> Split:
+    def prepare(self, grid: Grid) -> tuple[Composition, np.ndarray]:
         """The composition, and its sub-flows over a step."""
         composition = COMPOSITIONS[self.order]
-        return Split(composition, sub_flows(grid.motion, composition, self.step))
+        return composition, sub_flows(grid.motion, composition, self.step)

@@ -55,13 +55,6 @@ class Composition(NamedTuple):
     kicks: np.ndarray
 
 
-class Split(NamedTuple):
-    """A composition, and its sub-flows over a whole step, shape (stages, n_modes + 1, 6)."""
-
-    composition: Composition
-    flows: np.ndarray
-
-
 @kernel
 def sub_flows(motion, composition, length):
     """The sub-flows of a step of `length` [s], shape (stages, n_modes + 1, 6).
@@ -113,7 +106,7 @@ def kick(motion, tip, v, length):
 
 @kernel
 def take_step(motion, split, length, tip, u, v, with_force):
-    """One step of `length` [s] from `tip` (see `kick`), with the sub-flows made for it.
+    """One step of `length` [s] from `tip` (see `kick`); `split`: the composition, and its sub-flows over it.
 
     Returns the tip at the end, the energy taken by the contact, and whether a kick found the tip in it.
     Without `with_force` the last kick is left out.
@@ -146,7 +139,7 @@ def shorter_step(grid, split, x, h, with_force):
     for k in range(u.size):
         u[k], v[k] = grid.q0[k], grid.v0[k]
     tip = tip_at(motion, u, grid.clock + grid.progress[0].step * grid.step)
-    shorter = Split(split.composition, sub_flows(motion, split.composition, x * h))
+    shorter = split[0], sub_flows(motion, split[0], x * h)
     (depth, sine, cosine), _loss, _touched = take_step(motion, shorter, x * h, tip, u, v, with_force)
     return depth, tip_rate(motion, v, sine, cosine)
 
@@ -167,7 +160,7 @@ def clear_steps(motion, depth, u, v, h):
 
 @kernel
 def split_steps(grid, split):
-    """Steps from the grid point reached; the grid carries deviations from the steady motion."""
+    """Steps from the grid point reached, with deviations from the steady motion; `split`: see `take_step`."""
     motion, progress, h, u, v = grid.motion, grid.progress[0], grid.step, grid.q, grid.v
     tip, look = tip_at(motion, u, grid.clock + progress.step * h), progress.step
     while progress.step < grid.steps:

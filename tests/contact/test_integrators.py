@@ -170,7 +170,7 @@ def test_a_method_that_makes_flights_grow_is_refused(method: Integrator) -> None
 
 
 def test_the_default_is_the_exact_method_of_the_law() -> None:
-    assert Exact.certified and Exact.accuracy < 1e-6
+    assert Exact.certified and Exact.accuracy < 1e-6 and LAWS.keys() == EXACT_NAMES.keys()
     for code, laws in LAWS.items():
         oscillator = oscillator_with(laws[0], modes_for(laws[0]))
         methods = None, Exact(), EXACT_NAMES[code]
