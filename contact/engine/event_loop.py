@@ -8,8 +8,7 @@ costs one multiplication by the flow of a period and a proof, most often from th
 """
 
 from collections.abc import Callable
-from types import ModuleType
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -97,9 +96,9 @@ def follow_flights(motion, u, v, run, last, clock_end, space, recorder, samples)
     return status
 
 
-def recorded(file: ModuleType) -> Callable[..., None]:
+def recorded(law: Any) -> Callable[..., None]:
     """The `Watch` of the event loop: samples are taken, and the work done on the stop is the loss."""
-    series_variable, state, work = file.series_variable, file.state, file.work
+    series_variable, state, work = law.series_variable, law.state, law.work
 
     def watch(motion, run, u, v, s, until, series, watcher):
         space, recorder = watcher

@@ -9,7 +9,7 @@ series, and through instantaneous impacts by saltation matrices.
 """
 
 from collections.abc import Callable
-from types import ModuleType
+from typing import Any
 
 import numpy as np
 
@@ -35,9 +35,9 @@ MOST_STEPS = 800
 contact of the letter's beam."""
 
 
-def with_tangents(file: ModuleType) -> Callable[..., None]:
+def with_tangents(law: Any) -> Callable[..., None]:
     """The `Watch` of this flow: the tangents are carried through each step of a contact by its series."""
-    slopes = file.slopes
+    slopes = law.slopes
 
     def watch(motion, run, u, v, s, until, series, watcher):
         vary, tangent, space = watcher

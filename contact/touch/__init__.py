@@ -46,7 +46,8 @@ What a file offers.  `motion` is the oscillator, `run` the state of the motion
                                               `free` modes and the modal state (q, q')
     repeated_touch(motion, speed, period)     in closed form, the touch that repeats after some drive periods,
                                               as (jump, duration, leaves) of ``single_impact.Kick``, or None
-The last two are plain functions.  ``contact.touch.series`` has what most laws share.
+The last two are plain functions.  What a file leaves out is that of ``contact.touch.time_series``, or else
+that of ``contact.touch.series``.
 
 An unknown code is an error wherever a law is needed.  A kernel takes no functions as arguments; `by_law`
 therefore links the files of the table into one compiled function for each name.
@@ -54,18 +55,30 @@ therefore links the files of the table into one compiled function for each name.
 
 import inspect
 from collections.abc import Callable
-from typing import TypeVar
+from types import ModuleType, SimpleNamespace
+from typing import Any, TypeVar
 
 from contact.laws import HERTZ, LINEAR, NEWTON
 from contact.machine.compiled import part
-from contact.touch import delayed, hertz, linear, newton
+from contact.touch import delayed, hertz, linear, newton, series, time_series
 
 Function = TypeVar("Function", bound=Callable[..., object])
 
-TOUCHES = {NEWTON: newton, delayed.DELAYED: delayed, LINEAR: linear, HERTZ: hertz}  # the file of each law
 
-COMPILED = "series_size strike step series_variable state work leave force stiffness slopes saltation inside"
-"""The compiled functions of a law's file."""
+def offered(file: ModuleType) -> SimpleNamespace:
+    """What the file of a law offers, and for the rest what most laws share."""
+    law = SimpleNamespace(**vars(series) | vars(time_series) | vars(file))
+    law.acceleration = getattr(file, "acceleration", series.accelerated_by(law.force))
+    return law
+
+
+TOUCHES = {
+    NEWTON: offered(newton),
+    delayed.DELAYED: offered(delayed),
+    LINEAR: offered(linear),
+    HERTZ: offered(hertz),
+}
+"""The laws by their codes."""
 
 
 def by_law(functions: dict[int, Function]) -> Function:
@@ -80,17 +93,12 @@ def by_law(functions: dict[int, Function]) -> Function:
     return part(names["chosen"])
 
 
-(
-    series_size,
-    strike,
-    step,
-    series_variable,
-    state,
-    work,
-    leave,
-    force,
-    stiffness,
-    slopes,
-    saltation,
-    inside,
-) = (by_law({code: getattr(file, name) for code, file in TOUCHES.items()}) for name in COMPILED.split())
+def _compiled(name: str) -> Callable[..., Any]:
+    """The compiled function of this name, under any law."""
+    return by_law({code: getattr(law, name) for code, law in TOUCHES.items()})
+
+
+strike, force, stiffness, saltation, inside, series_size = map(
+    _compiled, ("strike", "force", "stiffness", "saltation", "inside", "series_size")
+)
+"""The functions of motion.law that are needed outside the steps of a touch (``contact.touch.passage``)."""

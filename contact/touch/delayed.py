@@ -127,8 +127,7 @@ class DelayedRestitution(ContactLaw):
 LAW, METHOD = "DelayedRestitution", "event-driven"
 REGIMES = (OUTSIDE, WAITING)
 
-force, stiffness, slopes = newton.force, newton.stiffness, newton.slopes
-series_size, series_variable, work = newton.series_size, newton.series_variable, newton.work
+force, stiffness, slopes, work = newton.force, newton.stiffness, newton.slopes, newton.work
 
 RESTITUTION, DELAY = 1, 3  # rows of the table, each followed by its slope; row 0 holds the approach speeds
 SINGULAR = 1e-13  # a smaller determinant of I - N R is rounding of terms of size 1: the mode is back

@@ -31,7 +31,6 @@ from contact.flight.motion import SQUARE
 from contact.flight.polynomial_root import first_polynomial_root, horner, polynomial_root
 from contact.machine.compiled import kernel, part
 from contact.machine.vector_loops import LANES, next_modes, weighted_rows
-from contact.touch import series as shared
 from contact.touch.series import limited_by_force, log_longest, powers_of, work_of
 from contact.trajectory import CONTACT, OUTSIDE
 
@@ -58,17 +57,11 @@ _EDGE = TOLERANCE ** (1.0 / ORDER)
 
 INVERSE = 1.0 / np.maximum(1.0, np.arange(64.0))  # 1/n
 
-strike, leave, saltation = shared.strike, shared.leave, shared.saltation
-inside, repeated_touch = shared.inside, shared.repeated_touch
-
 
 @kernel
 def force(numbers, depth, rate):
     """N at penetration `depth` >= 0 and its `rate` [N]."""
     return numbers.number0 * depth * math.sqrt(depth) * (1.0 + numbers.number1 * rate)
-
-
-acceleration = shared.accelerated_by(force)
 
 
 @kernel

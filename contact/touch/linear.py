@@ -15,7 +15,6 @@ from contact.flight.elementary import EPS
 from contact.flight.modal_flow import tip_rounding
 from contact.flight.polynomial_root import first_polynomial_root
 from contact.machine.compiled import kernel, part
-from contact.touch import series as shared
 from contact.touch import time_series
 from contact.touch.time_series import DEPTH, FORCE, begin, extend, longest_step
 from contact.trajectory import CONTACT, INSIDE, OUTSIDE
@@ -23,19 +22,11 @@ from contact.trajectory import CONTACT, INSIDE, OUTSIDE
 LAW, METHOD = "LinearContact", "piecewise-linear"
 REGIMES = (OUTSIDE, CONTACT, INSIDE)
 
-strike, leave, saltation = shared.strike, shared.leave, shared.saltation
-inside, repeated_touch = shared.inside, shared.repeated_touch
-series_size, series_variable = time_series.series_size, time_series.series_variable
-state, work = time_series.state, time_series.work
-
 
 @part
 def force(numbers, depth, rate):
     """N at penetration `depth` >= 0 and its `rate` [N]."""
     return max(0.0, numbers.number0 * depth + numbers.number1 * rate)
-
-
-acceleration = shared.accelerated_by(force)
 
 
 @part

@@ -30,7 +30,6 @@ from contact.flight.polynomial_root import first_polynomial_root
 from contact.flight.tip_search import jerk_bound
 from contact.flight.variation import NUMBER0, all_tip_changes
 from contact.machine.compiled import kernel, part
-from contact.touch import series as shared
 from contact.touch import time_series
 from contact.touch.time_series import FORCE, begin, extend, free_pull, longest_step
 from contact.trajectory import OUTSIDE, SUSTAINED
@@ -49,17 +48,11 @@ STEADY_PULL = 0.1
 """Part of itself by which the acceleration of the tip may change until the hops end: W is then right to 4 %,
 and the hops do end."""
 
-series_size, series_variable = time_series.series_size, time_series.series_variable
-inside, repeated_touch = shared.inside, shared.repeated_touch
-
 
 @part
 def force(numbers, depth, rate):
     """No force: the law acts at once [N]."""
     return 0.0
-
-
-acceleration = shared.accelerated_by(force)
 
 
 @part

@@ -13,8 +13,7 @@ method carries: deviations from the steady motion, or displacements and velociti
 
 import math
 from collections.abc import Callable
-from types import ModuleType
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -121,8 +120,8 @@ length."""
 
 CLOSEST = 4.0 * EPS  # part of a drive period next to the end in which no step is made
 
-Watch = Callable[[ModuleType], Callable[..., None]]
-"""From the file of a law to watch(motion, run, u, v, s, until, series, watcher): what is done at each step.
+Watch = Callable[[Any], Callable[..., None]]
+"""From a law of ``touch.TOUCHES`` to watch(motion, run, u, v, s, until, series, watcher), done at each step.
 The step leads from (u, v) at the clock of the run to `s`, in the law's own variable, at the clock `until`."""
 
 
@@ -159,9 +158,9 @@ def meet(motion, run, u, v, crosses, touches):
             hold(motion, run.clock, u, v)
 
 
-def _follow(file: ModuleType, watch: Callable[..., None]) -> Callable[..., int]:
+def _follow(law: Any, watch: Callable[..., None]) -> Callable[..., int]:
     """`follower` for one law, so that the law is looked up once a touch and not once a step."""
-    step, state, leave = file.step, file.state, file.leave
+    step, state, leave = law.step, law.state, law.leave
 
     def follow(motion, u, v, run, end, most, touches, series, watcher):
         """Follow a contact to its release, or to the clock `end`; returns how it is left.
@@ -191,4 +190,4 @@ def _follow(file: ModuleType, watch: Callable[..., None]) -> Callable[..., int]:
 
 def follower(watch: Watch) -> Callable[..., int]:
     """The compiled way through a contact under any law, with a `watch` on each step."""
-    return touch.by_law({code: _follow(file, watch(file)) for code, file in touch.TOUCHES.items()})
+    return touch.by_law({code: _follow(law, watch(law)) for code, law in touch.TOUCHES.items()})

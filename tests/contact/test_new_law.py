@@ -22,7 +22,6 @@ from contact.flight.modal_flow import tip_rounding
 from contact.flight.polynomial_root import first_polynomial_root
 from contact.laws import ContactLaw
 from contact.machine.compiled import kernel, part
-from contact.touch.linear import leave, saltation, series_size, series_variable, state, strike, work
 from contact.touch.time_series import DEPTH, FORCE, ORDER, begin, extend, longest_step
 from contact.trajectory import CONTACT, OUTSIDE
 
@@ -105,7 +104,7 @@ def test_a_new_law_is_one_file_one_line_and_one_export(form, tmp_path):
     (tmp_path / "contact/touch/cubic.py").write_text(LAW)
     table, exports = tmp_path / "contact/touch/__init__.py", tmp_path / "contact/__init__.py"
     text = table.read_text().replace("from contact.touch import ", "from contact.touch import cubic, ", 1)
-    table.write_text(text.replace("TOUCHES = {", "TOUCHES = {cubic.CubicContact.code: cubic, ", 1))
+    table.write_text(text.replace("TOUCHES = {", "TOUCHES = {9: offered(cubic),", 1))
     exports.write_text(
         exports.read_text().replace(
             "\n__version", "\nfrom contact.touch.cubic import CubicContact\n\n__version", 1
