@@ -1,5 +1,6 @@
-"""A law that is new to the package, N = k d^3, added to a copy as ``contact.touch`` says."""
+"""A law is one file: nothing of it stands elsewhere, and a new one, N = k d^3, needs no other change."""
 
+import ast
 import os
 import shutil
 import subprocess
@@ -8,6 +9,9 @@ from pathlib import Path
 
 import pytest
 from oscillators import slow
+
+import contact
+from contact import ContactLaw
 
 ROOT = Path(__file__).parents[2]
 
@@ -94,6 +98,28 @@ if whole:
     near = simulate(driven, start, periods=5, method=method).end
     assert near.displacement == pytest.approx(start.displacement, abs=1e-7 * spring.stop.gap)
 """
+
+
+def words_of(path: Path) -> set[str]:
+    """The names in the code of a file, and its texts of one word."""
+    nodes = list(ast.walk(ast.parse(path.read_text())))
+    aliases = [alias.name for node in nodes if isinstance(node, ast.ImportFrom) for alias in node.names]
+    modules = [node.module or "" for node in nodes if isinstance(node, ast.ImportFrom)]
+    texts = [node.value for node in nodes if isinstance(node, ast.Constant) if isinstance(node.value, str)]
+    named = [getattr(node, "id", getattr(node, "attr", getattr(node, "arg", None))) for node in nodes]
+    return {*aliases, *named, *".".join(modules).split("."), *texts}
+
+
+def test_what_serves_a_single_law_stands_in_its_file_alone():
+    """`State` keeps the wait and the rebound of a delayed rebound: the one exception."""
+    laws = [name for name, one in vars(contact).items() if getattr(one, "__mro__", ())[1:2] == (ContactLaw,)]
+    of_one = {*laws, *"newton delayed linear hertz NEWTON DELAYED LINEAR HERTZ".split()}
+    of_one |= {"INSIDE", "SUSTAINED", "WAITING", "wait"}
+    shared = "engine/event_loop flight/motion sensitivity/replay orbits/families/kick "
+    for name in (shared + "orbits/observation/amplitude_scan engine/recorder sensitivity/change").split():
+        assert words_of(ROOT / "contact" / f"{name}.py") & of_one == set()
+    files = {path.stem for path in (ROOT / "contact").rglob("*.py") if "wait" in words_of(path)}
+    assert files == {"trajectory", "passage", "start", "delayed"} and len(laws) == 5
 
 
 @pytest.mark.parametrize("form", ["short", *slow("whole")])

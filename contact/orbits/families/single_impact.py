@@ -89,10 +89,10 @@ class SingleImpactOrbit(TouchOrbit):
 
     def release(self) -> Release:
         """The end of the collision."""
-        motion, wait = self.oscillator.motion(), self.kick.duration
-        u, v = np.einsum("kij,kj->ik", free_flow(motion, wait), self.after)
+        motion, duration = self.oscillator.motion(), self.kick.duration
+        u, v = np.einsum("kij,kj->ik", free_flow(motion, duration), self.after)
         slack = CLOSING * self.duration + HEIGHT * motion.gap / self.speed
-        return Release(wait, u, v, self.kick.leaves, slack)
+        return Release(duration, u, v, self.kick.leaves, slack)
 
     def monodromy(self) -> Array:
         """The monodromy matrix of the oscillator's own collision, entered as on this orbit.
