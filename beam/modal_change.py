@@ -15,13 +15,41 @@ and phi' = V^T phi, Gamma' = V^T (Gamma + m phi).  T and the decay rates are kep
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.linalg import eigh
 
-from .modal_model import ModalChange, ModalModel, Point
-from .parameters import Array, require, require_kind, require_whole, require_within
+from .modal_model import UNITS, ModalModel, Point
+from .parameters import Array, final, require, require_array, require_kind, require_whole, require_within
+
+
+@final
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ModalChange:
+    """Derivatives of the four arrays of a `ModalModel` with respect to one parameter.
+
+    Parameters
+    ----------
+    omega, decay_rate, phi, participation : array_like, shape (n_modes,)
+        Derivatives [unit of the array per unit of the parameter]; stored as read-only float64 copies.
+    """
+
+    omega: Array
+    decay_rate: Array
+    phi: Array
+    participation: Array
+
+    def __post_init__(self) -> None:
+        shape, words = np.shape(self.omega), "a row of numbers"
+        for name, unit in UNITS.items():
+            given, unit = getattr(self, name), f"{unit} per unit of the parameter"
+            row = require_array(name, given, unit, dimensions=1, shape=shape, words=words)
+            object.__setattr__(self, name, row)
+
+    @property
+    def n_modes(self) -> int:
+        """Number of modes."""
+        return self.omega.size
 
 
 def free_period_change(model: ModalModel) -> ModalChange:
@@ -80,6 +108,8 @@ def with_tip_mass(model: ModalModel, mass: float) -> ModalModel:
     ValueError
         If the model has no tip mass, or the modes cannot do with so much less of it.
     """
+    from scipy.linalg import eigh  # slow to import
+
     omega, _rates, lead = _frequencies(model)
     require(bool(model.tip_mass), "tip_mass", f"is {model.tip_mass} kg; the model must have one, above zero")
     added = require_within("mass", mass, "kg", above=0) - float(model.tip_mass or 0.0)
