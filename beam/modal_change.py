@@ -46,11 +46,6 @@ class ModalChange:
             row = require_array(name, given, unit, dimensions=1, shape=shape, words=words)
             object.__setattr__(self, name, row)
 
-    @property
-    def n_modes(self) -> int:
-        """Number of modes."""
-        return self.omega.size
-
 
 def free_period_change(model: ModalModel) -> ModalChange:
     """Return the derivative of `model` with respect to its damped free period T, per second.
@@ -68,12 +63,9 @@ def decay_rate_change(model: ModalModel, mode: int | None = 0) -> ModalChange:
     The free period T is fixed; `mode` counts from 0. With None, all decay rates are scaled with that of
     mode 1. If mode 1 has no damping, None changes all rates by the same amount.
     """
-    omega, rates, k = _frequencies(model)
-    scaled = rates / rates[k] if rates[k] > 0.0 else np.ones(model.n_modes)
-    if mode is None:
-        change = scaled
-    else:
-        change = np.eye(model.n_modes)[require_whole("mode", mode, "[1]", low=0, high=model.n_modes - 1)]
+    (omega, rates, k), n = _frequencies(model), model.n_modes
+    scaled = rates / rates[k] if rates[k] > 0.0 else np.ones(n)
+    change = scaled if mode is None else np.eye(n)[require_whole("mode", mode, "[1]", low=0, high=n - 1)]
     moved = 0.25 * rates[k] * change[k] * omega / omega[k] ** 2
     return ModalChange(omega=moved, decay_rate=change, phi=0.0 * moved, participation=0.0 * moved)
 
@@ -115,8 +107,7 @@ def with_tip_mass(model: ModalModel, mass: float) -> ModalModel:
     added = require_within("mass", mass, "kg", above=0) - float(model.tip_mass or 0.0)
     left = 1.0 + added * float(model.phi @ model.phi)
     require(left > 0.0, "mass", f"is {mass} kg; with phi = {model.phi} that leaves a mode less than no mass")
-    inertia = np.eye(model.n_modes) + added * np.outer(model.phi, model.phi)
-    found, shapes = eigh(np.diag(omega**2), inertia)
+    found, shapes = eigh(np.diag(omega**2), np.eye(omega.size) + added * np.outer(model.phi, model.phi))
     place = np.argsort(np.argsort(omega))  # one more mass moves no frequency beyond the next
     shapes, paces = shapes[:, place], np.sqrt(np.maximum(found[place], 0.0))
     shapes = shapes * np.where(model.phi * (model.phi @ shapes) < 0.0, -1.0, 1.0)
