@@ -33,7 +33,7 @@ from typing import Any
 import numpy as np
 
 from beam.parameters import InvalidValue, require, require_kind, require_whole
-from contact.flight.modal_flow import flow_over, propagate, steady_motion, tip_rounding
+from contact.flight.modal_flow import free_flow, propagate, steady_motion, tip_rounding
 from contact.flight.motion import INVERSE_OMEGA, LOAD, Motion, with_only_mode
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
@@ -97,13 +97,6 @@ def _higher_energy(motion: Motion, k: int, u: np.ndarray, v: np.ndarray) -> floa
     return float(0.5 * np.sum(np.delete(v, k) ** 2 + np.delete(motion.omega * u, k) ** 2))
 
 
-def _ringing(motion: Motion, k: int, u: np.ndarray, v: np.ndarray) -> float:
-    """Amplitude at the tip of the free motion of all modes but number `k` [m]."""
-    sizes = np.hypot(u, v * motion.row(INVERSE_OMEGA))  # of zero frequency, the displacement
-    sizes[k] = 0.0
-    return motion.most_at_tip(sizes)
-
-
 def collisions(trajectory: Trajectory, *, unfinished: str = "refuse") -> list[Collision]:
     """Group the impacts of a trajectory into collisions, in the order of time.
 
@@ -119,12 +112,9 @@ def collisions(trajectory: Trajectory, *, unfinished: str = "refuse") -> list[Co
     run = require_kind("trajectory", trajectory, Trajectory, "a Trajectory, from simulate")
     motion, impacts, k = run.oscillator.motion(), run.impacts, run.oscillator.model.leading_mode
     single = with_only_mode(motion, k)
-    words = (
-        "load drives a higher mode of zero frequency; it must be zero there for a virtual motion of mode 1"
-    )
+    words = "load drives a higher mode of zero frequency; for a virtual motion it must be zero there"
     require(not np.delete(motion.row(LOAD), k).any(), words)
-    if unfinished not in ("refuse", "drop"):
-        raise InvalidValue(f'unfinished is {unfinished!r}; it must be "refuse" or "drop"')
+    require(unfinished in ("refuse", "drop"), f'unfinished is {unfinished!r}; it must be "refuse" or "drop"')
     rows = np.flatnonzero(impacts.kind != ImpactKind.GRAZE).tolist()
     found: list[Collision] = []
     while rows:
@@ -182,7 +172,7 @@ def _measure(motion: Motion, k: int, impacts: Impacts, rows: slice, outgoing: Vi
     u_free, v_free, back = np.empty_like(u_in), np.empty_like(v_in), s_in - length
     propagate(motion, u_in, v_in, length, u_free, v_free)
     jump = np.array([outgoing.u[0] - u_free[k], outgoing.v[0] - v_free[k]])
-    shift, change = single.tip(flow_over(single, back)[:, :4].reshape(1, 2, 2) @ jump).tolist()
+    shift, change = single.tip(free_flow(single, back) @ jump).tolist()
 
     # the outgoing hump around t_in, and its fall through the gap
     peak = outgoing.peak_near(back)
@@ -194,6 +184,8 @@ def _measure(motion: Motion, k: int, impacts: Impacts, rows: slice, outgoing: Vi
         restitution, delay = -outgoing.at(s_out)[1] / speed, s_out - back
 
     gained = _higher_energy(motion, k, u_out, v_out) - _higher_energy(motion, k, u_free, v_free)
+    amplitudes = np.hypot(u_in, v_in * motion.row(INVERSE_OMEGA))  # of zero frequency, the displacement
+    amplitudes[k] = 0.0
     return Collision(
         time=touch + s_in,
         end=float(impacts.end[last]),
@@ -208,7 +200,7 @@ def _measure(motion: Motion, k: int, impacts: Impacts, rows: slice, outgoing: Vi
         contact_time=float(np.sum(_length(motion, impacts, rows, rows))),
         first_touch=touch,
         real_approach=float(impacts.approach[first]),
-        ringing=_ringing(motion, k, u_in, v_in),
+        ringing=motion.most_at_tip(amplitudes),
         energy_to_higher_modes=gained,
         energy_lost=float(np.sum(impacts.loss[rows])),
         forced_by_ringing=forced,
@@ -240,8 +232,7 @@ def first_collision(
 def before_collision(oscillator: ImpactOscillator) -> State:
     """The steady motion of a driven `oscillator`, where the tip is lowest in the first drive period."""
     require_kind("oscillator", oscillator, ImpactOscillator, "an ImpactOscillator")
-    require(oscillator.drive is not None, "drive is None; there is no steady motion then, so give a state")
-    _ = oscillator.mean_height  # refuses a load under which there is none
+    _ = oscillator.mean_height  # refuses an oscillator without a steady motion
     motion = oscillator.motion()
     lowest = math.atan2(-motion.tip_sine, -motion.tip_cosine) % (2 * math.pi) / motion.drive
     q, q_rate = steady_motion(motion, lowest)

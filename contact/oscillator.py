@@ -151,11 +151,8 @@ class ImpactOscillator:
     @property
     def local_restitution(self) -> float:
         """The restitution of Newton's law at the stop [1]; TypeError for an oscillator with another law."""
-        law = self.stop.law
-        if not isinstance(law, NewtonRestitution):
-            raise InvalidType(
-                f"law of the stop is a {type(law).__name__}; it has no restitution, so give one"
-            )
+        words = "a NewtonRestitution, or a restitution must be given"
+        law: NewtonRestitution = require_kind("law of the stop", self.stop.law, NewtonRestitution, words)
         return law.local_restitution
 
     def with_amplitude(self, amplitude: float) -> ImpactOscillator:
@@ -193,11 +190,7 @@ class ImpactOscillator:
 
     def tip_response(self) -> complex:
         """Tip displacement per base amplitude without contact, complex [1]."""
-        return self._tip_response
-
-    @cached_property
-    def _tip_response(self) -> complex:
-        return complex(self.tip(self.steady_response()))
+        return complex(self._at_one_metre.tip_sine, self._at_one_metre.tip_cosine)
 
     @cached_property
     def mean_height(self) -> float:

@@ -9,7 +9,6 @@ import numpy as np
 
 from beam.parameters import (
     InvalidType,
-    InvalidValue,
     require,
     require_array,
     require_kind,
@@ -40,14 +39,12 @@ def _method(method: Integrator | str | None, law: int) -> Integrator:
         except TypeError:
             words = f"method is {method!r}, which needs a step; give {kind.__name__}(step=...)"
             raise InvalidType(words) from None
-    if not isinstance(chosen, Integrator):
-        raise InvalidType(f"method is {method!r}; it must be an Integrator or the name of one")
-    if not chosen.accepts(law):
-        known = ", ".join(LAW_NAMES[code] for code in chosen.laws)
-        raise InvalidType(
-            f"method is {chosen.name}, which follows {known}; the law of the stop is {LAW_NAMES[law]}"
-        )
-    return chosen
+    given: Integrator = require_kind("method", chosen, Integrator, "an Integrator or the name of one")
+    if not given.accepts(law):
+        known = ", ".join(LAW_NAMES[code] for code in given.laws)
+        words = f"which follows {known}; the law of the stop is {LAW_NAMES[law]}"
+        raise InvalidType(f"method is {given.name}, {words}")
+    return given
 
 
 def require_state(oscillator: ImpactOscillator, state: object) -> State:
@@ -83,24 +80,22 @@ def _run(
     period = oscillator.period
     whole = 0 if periods is None else require_whole("periods", periods, "drive periods")
     length = whole * period if whole else require_within("duration", duration, "s", above=0)
-    if length / period * 2 * oscillator.n_modes > MOST_STORED:
-        raise InvalidValue(
-            f"duration is {length:g} s, {length / period:g} drive periods with {oscillator.n_modes} modes; "
-            f"the strobes kept must stay below {MOST_STORED:g} numbers, so run it in pieces"
-        )
+    require(
+        length / period * 2 * oscillator.n_modes <= MOST_STORED,
+        f"duration is {length:g} s, {length / period:g} drive periods with {oscillator.n_modes} modes; "
+        f"the strobes kept must stay below {MOST_STORED:g} numbers, so run it in pieces",
+    )
     first, clock = (x.item() for x in split_time(start.time, period))
     last, clock_end = first + whole, clock
     if not whole:
         last, clock_end = (x.item() for x in split_time(start.time + length, period))
-    wanted = require_array("times", () if times is None else times, "s", dimensions=1, words="a rising array")
-    if np.any(np.diff(wanted) < 0.0):
-        raise InvalidValue(f"times is {shown(wanted.tolist())} s; it must be a rising array")
-    stop_time = start.time + length
-    if wanted.size and (wanted[0] < start.time - 1e-12 * length or wanted[-1] > stop_time + 1e-12 * length):
-        raise InvalidValue(
-            f"times run from {wanted[0]} to {wanted[-1]} s; "
-            f"they must lie within {start.time} to {stop_time} s"
-        )
+    words = "a rising array"
+    wanted = require_array("times", () if times is None else times, "s", dimensions=1, words=words)
+    require(not np.any(np.diff(wanted) < 0.0), f"times is {shown(wanted.tolist())} s; it must be {words}")
+    begin, end, beside = start.time, start.time + length, 1e-12 * length
+    valid = f"all must lie within {begin} to {end} s"
+    for time in wanted[[0, -1]] if wanted.size else ():
+        require(begin - beside <= time <= end + beside, "times", f"contains {time} s; {valid}")
     sample_period, sample_clock = split_time(wanted, period)
     late = (sample_period > last) | ((sample_period == last) & (sample_clock > clock_end))
     sample_period[late], sample_clock[late] = last, clock_end

@@ -14,7 +14,7 @@ from functools import cached_property
 
 import numpy as np
 
-from beam.parameters import InvalidValue, final, is_number, require, require_whole, require_within, shown
+from beam.parameters import final, is_number, require, require_array, require_whole, require_within, shown
 from contact.drive import split_time
 from contact.flight.modal_flow import steady_motion
 from contact.flight.motion import Motion
@@ -24,29 +24,20 @@ from contact.oscillator import ImpactOscillator
 class Regime(IntEnum):
     """How the stop acts on the tip."""
 
-    OUTSIDE = 0
-    """Off the wall."""
-    CONTACT = 1
-    """Pushed by the wall."""
-    INSIDE = 2
-    """Behind the wall's rest position, without force."""
-    SUSTAINED = 3
-    """Held on the wall by the motion."""
-    WAITING = 4
-    """On the wall, waiting for a delayed rebound."""
+    OUTSIDE = 0  #: Off the wall.
+    CONTACT = 1  #: Pushed by the wall.
+    INSIDE = 2  #: Behind the wall's rest position, without force.
+    SUSTAINED = 3  #: Held on the wall by the motion.
+    WAITING = 4  #: On the wall, waiting for a delayed rebound.
 
 
 class ImpactKind(IntEnum):
     """Kind of a touch of the tip."""
 
-    IMPACT = 0
-    """A touch that acts on the motion."""
-    GRAZE = 1
-    """A touch without effect, within rounding."""
-    STAY = 2
-    """A stay on the wall after accumulated impacts."""
-    UNDER_WAY = 3
-    """A contact that had begun before the run."""
+    IMPACT = 0  #: A touch that acts on the motion.
+    GRAZE = 1  #: A touch without effect, within rounding.
+    STAY = 2  #: A stay on the wall after accumulated impacts.
+    UNDER_WAY = 3  #: A contact that had begun before the run.
 
 
 OUTSIDE, CONTACT, INSIDE, SUSTAINED, WAITING = map(int, Regime)
@@ -79,31 +70,21 @@ class State:
     rebound: float = 0.0
 
     def __post_init__(self) -> None:
-        for name in ("displacement", "velocity"):
-            given = getattr(self, name)
-            try:
-                array = np.array(given, dtype=float)
-            except (TypeError, ValueError):
-                array = np.full(1, np.nan)
-            if array.ndim != 1 or not array.size or not np.all(np.isfinite(array)):
-                raise InvalidValue(
-                    f"{name} of the state must be a finite array of shape (n_modes,), not {shown(given)}"
-                )
-            array.setflags(write=False)
+        shape, words = None, "a number for each mode"
+        for name, unit in (("displacement", "m kg^0.5"), ("velocity", "m kg^0.5/s")):
+            where, given = f"{name} of the state", getattr(self, name)
+            array = require_array(where, given, unit, dimensions=1, shape=shape, words=words)
             object.__setattr__(self, name, array)
+            shape = array.shape
+        require(shape != (0,), "displacement of the state", f"is empty; it must be {words}")
         if type(self.regime) is not Regime:
-            if not (is_number(self.regime) and self.regime in (0, 1, 2, 3, 4)):
-                raise InvalidValue(f"regime of the state is {shown(self.regime)}; it must be 0, 1, 2, 3 or 4")
+            valid = is_number(self.regime) and self.regime in (0, 1, 2, 3, 4)
+            require(valid, f"regime of the state is {shown(self.regime)}; it must be 0, 1, 2, 3 or 4")
             object.__setattr__(self, "regime", Regime(self.regime))
         for name, unit in (("time", "s"), ("wait", "s"), ("rebound", "m/s")):
             value = getattr(self, name)
             if type(value) is not float or not math.isfinite(value):  # the usual case without a call
                 require_within(f"{name} of the state", value, unit)
-        if self.displacement.shape != self.velocity.shape:
-            raise InvalidValue(
-                f"velocity of the state has shape {self.velocity.shape}; it must be that of the "
-                f"displacement, {self.displacement.shape}"
-            )
 
     @staticmethod
     def rest(n_modes: int) -> State:

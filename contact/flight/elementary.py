@@ -41,7 +41,7 @@ def two_product(a, b):
 
 
 @inlined
-def reduced_sine_cosine(phase, rest):
+def fast_sine_cosine(phase, rest):
     """sin and cos of `phase` + `rest`, |phase| below `FARTHEST` and |rest| far below one."""
     n = np.floor(phase * (2.0 / math.pi) + 0.5)
     lead, part = phase - n * _QUARTER, n * _QUARTER_LOW
@@ -73,7 +73,7 @@ def sine_cosine(phase, rest):
     if not abs(phase) < FARTHEST:
         s, c = math.sin(phase), math.cos(phase)
         return s + rest * c, c - rest * s
-    return reduced_sine_cosine(phase, rest)
+    return fast_sine_cosine(phase, rest)
 
 
 @inlined

@@ -28,27 +28,8 @@ import math
 
 import numpy as np
 
-from contact.flight.elementary import (
-    EPS,
-    FARTHEST,
-    exponential,
-    reduced_sine_cosine,
-    sine_cosine,
-    two_product,
-)
-from contact.flight.motion import (
-    DAMPED,
-    DAMPED_LOW,
-    DECAY,
-    LOAD,
-    OFFSET,
-    OMEGA,
-    SINE,
-    SQUARE,
-    TIME_SCALE,
-    WEIGHT,
-    Motion,
-)
+from contact.flight.elementary import EPS, FARTHEST, exponential, fast_sine_cosine, sine_cosine, two_product
+from contact.flight.motion import DAMPED, DAMPED_LOW, DECAY, LOAD, OMEGA, SQUARE, TIME_SCALE, WEIGHT, Motion
 from contact.machine.compiled import aligned, inlined, kernel
 
 START_U, START_V, U, V, HEIGHT, RATE, ACCELERATION, JERK_BOUND, ABOVE = range(9)
@@ -134,7 +115,7 @@ def ringing_flow(modes, flight, start, stop, t):
     u, v, u_out, v_out = flight[START_U], flight[START_V], flight[U], flight[V]
     for k in range(np.uintp(start), np.uintp(stop)):
         p, e = two_product(damped[k], t)
-        s, c = reduced_sine_cosine(p, e + low[k] * t)
+        s, c = fast_sine_cosine(p, e + low[k] * t)
         half = 0.5 * decay[k]
         fade = exponential(-half * t)
         cn, sn = fade * c, fade * s / damped[k]
@@ -273,6 +254,17 @@ def tip_rounding(motion, u, v):
 
 
 @kernel
+def jerk_bound(motion, u, v):
+    """Bound of the third derivative of the tip displacement in a flight from (u, v) [m/s^3]."""
+    total, modes = motion.amplitude * motion.drive**3, motion.modes
+    for k in range(motion.size):
+        a = mode_acceleration(motion, k, u[k], v[k])
+        jerk = -modes[DECAY, k] * a - modes[SQUARE, k] * v[k]
+        total += tip_bound(motion, k, jerk, math.sqrt(modes[SQUARE, k]) * a)
+    return total
+
+
+@kernel
 def speed_scale(motion, u, v):
     """The square root of twice the modal energy, of the deviation and of the steady motion [m kg^0.5/s]."""
     energy, square = motion.steady_energy, motion.modes[SQUARE]
@@ -283,7 +275,7 @@ def speed_scale(motion, u, v):
 
 def steady_motion(motion: Motion, clock: float | np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Steady modal displacement and velocity at times `clock` since a strobe, each (..., n_modes)."""
-    sine, cosine, offset = motion.modes[SINE : OFFSET + 1, : motion.size]
+    sine, cosine, offset = motion.steady
     phase = motion.drive * np.asarray(clock, dtype=float)[..., None]
     s, c = np.sin(phase), np.cos(phase)
     return offset + sine * s + cosine * c, motion.drive * (sine * c - cosine * s)

@@ -63,6 +63,11 @@ class Motion(NamedTuple):
         """phi [kg^-0.5], shape (n_modes,)."""
         return self.row(WEIGHT)
 
+    @property
+    def steady(self) -> np.ndarray:
+        """S, C and g/omega^2 [m kg^0.5], shape (3, n_modes)."""
+        return self.modes[SINE : OFFSET + 1, : self.size]
+
     def tip(self, values: np.ndarray) -> np.ndarray:
         """The sum of phi_k times modal values, of shape (n_modes,) or (n_modes, n)."""
         return self.phi @ values
@@ -102,21 +107,16 @@ def motion_of(
     n = omega.size
     response = np.zeros(n, dtype=complex) if response is None else np.asarray(response)
     load = np.zeros(n) if load is None else np.asarray(load)
-    stiff = omega > 0
-    offset = np.where(stiff, load / np.where(stiff, omega, 1.0) ** 2, 0.0)
-    pairs = np.array([damped_frequency(x, c) for x, c in zip(omega, decay, strict=True)]).reshape(n, 2)
-    modes = np.zeros((12, (n + LANES - 1) // LANES * LANES))
-    modes[DAMPED] = 1.0
-    modes[DECAY, :n], modes[SQUARE, :n], modes[WEIGHT, :n] = decay, omega * omega, phi
-    modes[LOAD, :n], modes[OFFSET, :n] = np.where(stiff, 0.0, load), offset
-    modes[DAMPED, :n], modes[DAMPED_LOW, :n], modes[OMEGA, :n] = pairs[:, 0], pairs[:, 1], omega
-    modes[SINE, :n], modes[COSINE, :n] = response.real, response.imag
-    top = np.maximum(omega, 0.5 * decay)
-    modes[INVERSE_OMEGA, :n] = np.where(stiff, 1.0 / np.where(stiff, omega, 1.0), 0.0)
-    modes[TIME_SCALE, :n] = np.where(top > 0, 1.0 / np.where(top > 0, top, 1.0), period)
-    all_underdamped = bool(np.all((pairs[:, 0] > 0) & (omega > 0.5 * decay) & (modes[LOAD, :n] == 0)))
+    stiff, top = omega > 0, np.maximum(omega, 0.5 * decay)
+    offset = np.divide(load, omega**2, out=np.zeros(n), where=stiff)
+    inverse = np.divide(1.0, omega, out=np.zeros(n), where=stiff)
+    time = np.divide(1.0, top, out=np.full(n, float(period)), where=top > 0)
+    high, low = np.array([damped_frequency(x, c) for x, c in zip(omega, decay, strict=True)]).reshape(n, 2).T
+    modes, sc = np.zeros((12, (n + LANES - 1) // LANES * LANES)), (response.real, response.imag)
+    modes[DAMPED], drift = 1.0, np.where(stiff, 0.0, load)
+    modes[:, :n] = decay, omega**2, phi, drift, high, low, omega, inverse, time, *sc, offset  # in their order
+    all_underdamped = bool(np.all((high > 0) & (omega > 0.5 * decay) & (drift == 0)))
     tip = complex(phi @ response)
-    numbers = law.numbers
     return Motion(
         modes=modes,
         size=n,
@@ -130,10 +130,10 @@ def motion_of(
         inverse_mass=float(phi @ phi),
         steady_energy=float(drive**2 * np.sum(np.abs(response) ** 2)),
         law=int(law.code),
-        number0=float(numbers[0]),
-        number1=float(numbers[1]),
+        number0=float(law.numbers[0]),
+        number1=float(law.numbers[1]),
         all_underdamped=all_underdamped,
-        phase_rate=float(pairs[:, 0].max()),
+        phase_rate=float(high.max()),
         fastest=float(max(drive, omega.max(), decay.max())),
         table=np.asarray(law.table),
     )

@@ -17,16 +17,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from contact.flight import modal_flow as rows
 from contact.flight.crossing import CROSSES, FREE
-from contact.flight.modal_flow import (
-    START_U,
-    START_V,
-    apply_flow,
-    flow_over,
-    propagate_flight,
-    tip_rounding,
-    tip_state,
-)
+from contact.flight.modal_flow import apply_flow, flow_over, propagate_flight, tip_rounding, tip_state
 from contact.flight.motion import Motion
 from contact.flight.tip_search import find_peak, root_between, tip_now
 from contact.machine.compiled import kernel
@@ -56,7 +49,7 @@ def first_sampled_crossing(motion, flight, base, duration, contact_order, sample
     Returns FREE or CROSSES, the time since the start of the flight [s], and the number of positions computed.
     """
     (spacing, flows), n, count = samples, motion.size, 0
-    u, v = flight[START_U, :n], flight[START_V, :n]
+    u, v = flight[rows.START_U, :n], flight[rows.START_V, :n]
     margin = tip_rounding(motion, u, v)
     height, rate, _acceleration = tip_state(motion, base, u, v)
     if contact_order == 0 and height >= -margin and rate > 0.0:

@@ -10,18 +10,7 @@ import math
 import numpy as np
 
 from contact.flight.elementary import EPS
-from contact.flight.modal_flow import (
-    U,
-    V,
-    flow,
-    load_state,
-    mode_acceleration,
-    new_flight,
-    tip_bound,
-    tip_rounding,
-    tip_state,
-)
-from contact.flight.motion import DECAY, SQUARE
+from contact.flight.modal_flow import U, V, flow, jerk_bound, load_state, new_flight, tip_rounding, tip_state
 from contact.machine.compiled import kernel
 
 SHORTEST = 1e-9
@@ -110,17 +99,6 @@ def find_peak(motion, flight, base, point, bracket, m3, margin):
         s = new
         _unused, y1, y2 = tip_now(motion, flight, base, s)
     return s
-
-
-@kernel
-def jerk_bound(motion, u, v):
-    """Bound of the third derivative of the tip displacement in a flight from (u, v) [m/s^3]."""
-    total, modes = motion.amplitude * motion.drive**3, motion.modes
-    for k in range(motion.size):
-        a = mode_acceleration(motion, k, u[k], v[k])
-        jerk = -modes[DECAY, k] * a - modes[SQUARE, k] * v[k]
-        total += tip_bound(motion, k, jerk, math.sqrt(modes[SQUARE, k]) * a)
-    return total
 
 
 @kernel

@@ -48,20 +48,15 @@ UNUSED = 3600.0  # time without use [s] after which machine code is removed; an 
 Function = TypeVar("Function", bound=Callable[..., object])
 
 
-def _writable(folder: Path) -> bool:
-    """Whether files can be written in `folder`, which is made if it does not exist."""
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=folder):
-            return True
-    except OSError:
-        return False
-
-
 def _writable_parent(package: Path) -> Path | None:
     """The folder for cache folders: beside the sources, or the user's cache; None if neither is writable."""
     user_cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "grazing-spring"
-    return next((folder for folder in (package / "__pycache__", user_cache) if _writable(folder)), None)
+    for folder in (package / "__pycache__", user_cache):
+        with contextlib.suppress(OSError):
+            folder.mkdir(parents=True, exist_ok=True)
+            with tempfile.TemporaryFile(dir=folder):
+                return folder
+    return None
 
 
 @cache

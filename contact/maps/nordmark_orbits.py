@@ -42,14 +42,15 @@ MOST_PERIODS = 100_000  # longest period of an orbit, in drive periods; its stat
 class MaximalOrbit:
     """A periodic solution of the map with its impact at states[0].
 
-    Fields: `map` and `rho`; `period` m; `root` X = sqrt(x_0); `states`, shape (m, 2), the (x, y) in order of
-    time; `trace` and `determinant` of the derivative of m steps. All pure numbers.
+    Fields: `map` and `rho`; `period` m; `speed` X = sqrt(x_0), in proportion to the approach speed; `states`,
+    shape (m, 2), the (x, y) in order of time; `trace` and `determinant` of the derivative of m steps. All
+    pure numbers.
     """
 
     map: NordmarkMap
     rho: float
     period: int
-    root: float
+    speed: float
     states: NDArray[np.float64]
     trace: float
     determinant: float
@@ -58,11 +59,6 @@ class MaximalOrbit:
     def excess(self) -> float:
         """F/F_g - 1 [1]."""
         return self.map.excess(self.rho)
-
-    @property
-    def speed(self) -> float:
-        """The root X, in proportion to the approach speed [1]."""
-        return self.root
 
     @property
     def multipliers(self) -> NDArray[np.complex128]:
@@ -122,7 +118,7 @@ class MapFamily:
             map=self.map,
             rho=rho,
             period=m,
-            root=root,
+            speed=root,
             states=np.column_stack([x, y]),
             trace=-self.last / (2.0 * root) + self.trace_limit,
             determinant=self.determinant,
@@ -154,7 +150,7 @@ class MapFamily:
         ends = [root for k in range(1, self.period) for root in positive_roots(*self._height(k))]
         flip = 1.0 + self.determinant + self.trace_limit
         ends += [self.last / (2.0 * flip)] if flip < 0.0 else []
-        marks = [at_fold.root, *sorted(root for root in ends if root > at_fold.root), math.inf]
+        marks = [at_fold.speed, *sorted(root for root in ends if root > at_fold.speed), math.inf]
         for low, high in pairwise(marks):
             orbit = self.orbit(0.5 * (low + high) if high < math.inf else 2.0 * low)
             if orbit.stable and orbit.admissible:

@@ -45,15 +45,6 @@ def strobed_system(oscillator: ImpactOscillator) -> StrobedSystem:
 
 
 @kernel
-def _table_at(table, motion, factor):
-    """`table` at `factor` times the amplitude of its `motion`; None stays None."""
-    if table is None:
-        return table
-    else:
-        return table_at(table, motion, factor)
-
-
-@kernel
 def at_amplitude(system, factor):
     """The system at `factor` times its own base amplitude."""
     motion, n = with_drive(system.motion, factor), system.motion.size
@@ -61,7 +52,7 @@ def at_amplitude(system, factor):
     for k in range(n):
         mean[k] = motion.modes[OFFSET, k] + motion.modes[COSINE, k]
         mean[n + k] = motion.drive * motion.modes[SINE, k]
-    return StrobedSystem(motion, _table_at(system.table, system.motion, factor), mean, system.weight)
+    return StrobedSystem(motion, table_at(system.table, system.motion, factor), mean, system.weight)
 
 
 @kernel

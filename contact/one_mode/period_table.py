@@ -95,7 +95,12 @@ class PeriodTable(NamedTuple):
 
 @inlined
 def table_at(table, motion, factor):
-    """The `table` of `motion` at `factor` times its amplitude; X_k and R_k are in proportion to it."""
+    """The `table` of `motion` at `factor` times its amplitude, to which X_k and R_k are in proportion.
+
+    None, the table of any other oscillator, stays None.
+    """
+    if table is None:
+        return table
     mode, amplitude, omega = table.mode, factor * motion.amplitude, motion.modes[OMEGA, 0]
     steady = abs(motion.level) + factor * (abs(motion.tip_sine) + abs(motion.tip_cosine)) + motion.gap
     margin = SAFETY * 4.0 * EPS * (steady + 2.0 * max(1.0, 0.5 * mode.decay / omega) * abs(mode.gap))

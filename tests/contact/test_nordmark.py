@@ -80,9 +80,9 @@ def test_folds_by_fifty_digit_newton(frequency: float, period: int, y_line: str)
                 chain = mp.matrix([[alpha, 1], [-gamma, 0]]) * chain
             return [x1 - x0, y1 - y, 1 - chain[0, 0] - chain[1, 1] + mp.det(chain)]
 
-        start = [mp.mpf(at_fold.root), mp.mpf(at_fold.states[0, 1]), mp.mpf(at_fold.rho)]
+        start = [mp.mpf(at_fold.speed), mp.mpf(at_fold.states[0, 1]), mp.mpf(at_fold.rho)]
         root, y, rho = mp.findroot(conditions, [value * mp.mpf("1.001") for value in start])
-    assert at_fold.root == pytest.approx(float(root), rel=1e-11)
+    assert at_fold.speed == pytest.approx(float(root), rel=1e-11)
     assert at_fold.states[0, 1] == pytest.approx(float(y), rel=1e-11)
     assert abs(at_fold.rho - float(rho)) < 1e-12
 
@@ -99,10 +99,10 @@ def test_orbits_repeat_and_have_their_multipliers(period: int, delay: float) -> 
     for orbit in orbits:
         assert len(orbit.states) == period
         linear = np.array([[made.alpha, 1.0], [-made.gamma, 0.0]])
-        impact = np.array([[-0.5 / orbit.root, 1.0], [-made.gamma_impact, 0.0]])
+        impact = np.array([[-0.5 / orbit.speed, 1.0], [-made.gamma_impact, 0.0]])
         x, y = orbit.states[0]
-        assert x == orbit.root**2
-        state = np.array([-orbit.root + made.delay_term + y + rho, -made.gamma_impact * x])
+        assert x == orbit.speed**2
+        state = np.array([-orbit.speed + made.delay_term + y + rho, -made.gamma_impact * x])
         for expected in orbit.states[1:]:
             assert np.allclose(state, expected, atol=1e-14)
             state = linear @ state + [rho, 0.0]
