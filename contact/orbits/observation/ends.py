@@ -141,7 +141,7 @@ def orbit_end(
     raise BranchEnded(time=0.0, gap=0.0, velocity=0.0, detail=words)
 
 
-def _exact_end(strobed: Any, bracket: OrbitEnd[S]) -> tuple[OrbitEnd[S] | None, Any]:
+def _exact_end(strobed: Any, bracket: OrbitEnd[Any]) -> tuple[OrbitEnd[Any] | None, Any]:
     """The end in the `bracket`; or None and the state at `lost`, if the orbit still exists there."""
     period, impacts, lost = bracket.period, bracket.impacts, bracket.lost
     if isinstance(strobed, NordmarkMap) and impacts == 1:
