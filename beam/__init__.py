@@ -42,8 +42,14 @@ if TYPE_CHECKING:
     from .frequency_equation import ExactModes, UniformBeam, exact_modes, frequency_function
     from .harmonic_balance import PeriodicMotion, periodic_motion
     from .material import ALUMINA, BRASS, DAMPING_TAPE, STEEL, Material
-    from .modal_change import decay_rate_change, free_period_change, tip_mass_change, with_tip_mass
-    from .modal_model import ModalChange, ModalModel, Point, single_mode
+    from .modal_change import (
+        ModalChange,
+        decay_rate_change,
+        free_period_change,
+        tip_mass_change,
+        with_tip_mass,
+    )
+    from .modal_model import ModalModel, Point, single_mode
     from .modes import Modes, ShapesAlong, natural_modes
     from .parameters import InvalidType, InvalidValue, Refusal, SuspiciousValue
     from .reduction import reduce

@@ -15,13 +15,36 @@ and phi' = V^T phi, Gamma' = V^T (Gamma + m phi).  T and the decay rates are kep
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.linalg import eigh
 
-from .modal_model import ModalChange, ModalModel, Point
-from .parameters import Array, require, require_kind, require_whole, require_within
+from .modal_model import UNITS, ModalModel, Point
+from .parameters import Array, final, require, require_array, require_kind, require_whole, require_within
+
+
+@final
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ModalChange:
+    """Derivatives of the four arrays of a `ModalModel` with respect to one parameter.
+
+    Parameters
+    ----------
+    omega, decay_rate, phi, participation : array_like, shape (n_modes,)
+        Derivatives [unit of the array per unit of the parameter]; stored as read-only float64 copies.
+    """
+
+    omega: Array
+    decay_rate: Array
+    phi: Array
+    participation: Array
+
+    def __post_init__(self) -> None:
+        shape, words = np.shape(self.omega), "a row of numbers"
+        for name, unit in UNITS.items():
+            given, unit = getattr(self, name), f"{unit} per unit of the parameter"
+            row = require_array(name, given, unit, dimensions=1, shape=shape, words=words)
+            object.__setattr__(self, name, row)
 
 
 def free_period_change(model: ModalModel) -> ModalChange:
@@ -40,12 +63,9 @@ def decay_rate_change(model: ModalModel, mode: int | None = 0) -> ModalChange:
     The free period T is fixed; `mode` counts from 0. With None, all decay rates are scaled with that of
     mode 1. If mode 1 has no damping, None changes all rates by the same amount.
     """
-    omega, rates, k = _frequencies(model)
-    scaled = rates / rates[k] if rates[k] > 0.0 else np.ones(model.n_modes)
-    if mode is None:
-        change = scaled
-    else:
-        change = np.eye(model.n_modes)[require_whole("mode", mode, "[1]", low=0, high=model.n_modes - 1)]
+    (omega, rates, k), n = _frequencies(model), model.n_modes
+    scaled = rates / rates[k] if rates[k] > 0.0 else np.ones(n)
+    change = scaled if mode is None else np.eye(n)[require_whole("mode", mode, "[1]", low=0, high=n - 1)]
     moved = 0.25 * rates[k] * change[k] * omega / omega[k] ** 2
     return ModalChange(omega=moved, decay_rate=change, phi=0.0 * moved, participation=0.0 * moved)
 
@@ -80,13 +100,14 @@ def with_tip_mass(model: ModalModel, mass: float) -> ModalModel:
     ValueError
         If the model has no tip mass, or the modes cannot do with so much less of it.
     """
+    from scipy.linalg import eigh  # slow to import
+
     omega, _rates, lead = _frequencies(model)
     require(bool(model.tip_mass), "tip_mass", f"is {model.tip_mass} kg; the model must have one, above zero")
     added = require_within("mass", mass, "kg", above=0) - float(model.tip_mass or 0.0)
     left = 1.0 + added * float(model.phi @ model.phi)
     require(left > 0.0, "mass", f"is {mass} kg; with phi = {model.phi} that leaves a mode less than no mass")
-    inertia = np.eye(model.n_modes) + added * np.outer(model.phi, model.phi)
-    found, shapes = eigh(np.diag(omega**2), inertia)
+    found, shapes = eigh(np.diag(omega**2), np.eye(omega.size) + added * np.outer(model.phi, model.phi))
     place = np.argsort(np.argsort(omega))  # one more mass moves no frequency beyond the next
     shapes, paces = shapes[:, place], np.sqrt(np.maximum(found[place], 0.0))
     shapes = shapes * np.where(model.phi * (model.phi @ shapes) < 0.0, -1.0, 1.0)

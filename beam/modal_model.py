@@ -250,35 +250,6 @@ class ModalModel:
         return ModalModel(omega=omega, decay_rate=rates, phi=phi, participation=mass * shapes[n])
 
 
-@final
-@dataclass(frozen=True, kw_only=True, eq=False)
-class ModalChange:
-    """Derivatives of the four arrays of a `ModalModel` with respect to one parameter.
-
-    Parameters
-    ----------
-    omega, decay_rate, phi, participation : array_like, shape (n_modes,)
-        Derivatives [unit of the array per unit of the parameter]; stored as read-only float64 copies.
-    """
-
-    omega: NDArray[np.float64]
-    decay_rate: NDArray[np.float64]
-    phi: NDArray[np.float64]
-    participation: NDArray[np.float64]
-
-    def __post_init__(self) -> None:
-        shape, words = np.shape(self.omega), "a row of numbers"
-        for name, unit in UNITS.items():
-            given, unit = getattr(self, name), f"{unit} per unit of the parameter"
-            row = require_array(name, given, unit, dimensions=1, shape=shape, words=words)
-            object.__setattr__(self, name, row)
-
-    @property
-    def n_modes(self) -> int:
-        """Number of modes."""
-        return self.omega.size
-
-
 def _check_statics(owner: Point | ModalModel, **units: str) -> None:
     """Store these numbers of the owner as floats; a negative one is refused, None stays."""
     for name, unit in units.items():

@@ -21,22 +21,35 @@ from contact.oscillator import ImpactOscillator
 
 
 class Regime(IntEnum):
-    """How the stop acts on the tip."""
+    """How the stop acts on the tip.
 
-    OUTSIDE = 0  #: Off the wall.
-    CONTACT = 1  #: Pushed by the wall.
-    INSIDE = 2  #: Behind the wall's rest position, without force.
-    SUSTAINED = 3  #: Held on the wall by the motion.
-    WAITING = 4  #: On the wall, waiting for a delayed rebound.
+    OUTSIDE: off the wall.
+    CONTACT: pushed by the wall.
+    INSIDE: behind the wall's rest position, without force.
+    SUSTAINED: held on the wall by the motion.
+    WAITING: on the wall, waiting for a delayed rebound.
+    """
+
+    OUTSIDE = 0
+    CONTACT = 1
+    INSIDE = 2
+    SUSTAINED = 3
+    WAITING = 4
 
 
 class ImpactKind(IntEnum):
-    """Kind of a touch of the tip."""
+    """Kind of a touch of the tip.
 
-    IMPACT = 0  #: A touch that acts on the motion.
-    GRAZE = 1  #: A touch without effect, within rounding.
-    STAY = 2  #: A stay on the wall after accumulated impacts.
-    UNDER_WAY = 3  #: A contact that had begun before the run.
+    IMPACT: a touch that acts on the motion.
+    GRAZE: a touch without effect, within rounding.
+    STAY: a stay on the wall after accumulated impacts.
+    UNDER_WAY: a contact that had begun before the run.
+    """
+
+    IMPACT = 0
+    GRAZE = 1
+    STAY = 2
+    UNDER_WAY = 3
 
 
 OUTSIDE, CONTACT, INSIDE, SUSTAINED, WAITING = map(int, Regime)

@@ -8,7 +8,8 @@ costs one multiplication by the flow of a period and a proof, most often from th
 """
 
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from types import SimpleNamespace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -96,7 +97,7 @@ def follow_flights(motion, u, v, run, last, clock_end, space, recorder, samples)
     return status
 
 
-def recorded(law: Any) -> Callable[..., None]:
+def recorded(law: SimpleNamespace) -> Callable[..., None]:
     """The `Watch` of the event loop: samples are taken, and the work done on the stop is the loss."""
     series_variable, state, work = law.series_variable, law.state, law.work
 

@@ -73,15 +73,16 @@ class Change:
     def applied(self, oscillator: ImpactOscillator, step: float) -> ImpactOscillator:
         """The oscillator with its numbers moved by `step` times this change, statics of the tip left out."""
 
-        def moved(one: Any, *names: str) -> Any:
-            return replace(one, **{name: getattr(one, name) + step * getattr(self, name) for name in names})
+        def moved(one: object, change: object, names: Sequence[str]) -> dict[str, Any]:
+            return {name: getattr(one, name) + step * getattr(change, name) for name in names}
 
-        model, law = oscillator.model, oscillator.stop.law.moved(*(step * np.array(self.law)))
+        model, stop, drive = oscillator.model, oscillator.stop, oscillator.driven
         if self.model is not None:
-            rows = {name: getattr(model, name) + step * getattr(self.model, name) for name in ARRAYS}
-            model = ModalModel(**rows)
-        stop, drive = replace(moved(oscillator.stop, "gap"), law=law), oscillator.driven
-        return replace(oscillator, model=model, stop=stop, drive=moved(drive, "frequency", "amplitude"))
+            model = ModalModel(**moved(model, self.model, ARRAYS))
+        law = stop.law.moved(*(step * np.array(self.law)))
+        stop = replace(stop, **moved(stop, self, ["gap"]), law=law)
+        drive = replace(drive, **moved(drive, self, ["frequency", "amplitude"]))
+        return replace(oscillator, model=model, stop=stop, drive=drive)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -9,7 +9,7 @@ series, and through instantaneous impacts by saltation matrices.
 """
 
 from collections.abc import Callable
-from typing import Any
+from types import SimpleNamespace
 
 import numpy as np
 
@@ -35,7 +35,7 @@ MOST_STEPS = 800
 contact of the letter's beam."""
 
 
-def with_tangents(law: Any) -> Callable[..., None]:
+def with_tangents(law: SimpleNamespace) -> Callable[..., None]:
     """The `Watch` of this flow: the tangents are carried through each step of a contact by its series."""
     slopes = law.slopes
 

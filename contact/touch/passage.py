@@ -13,7 +13,8 @@ method carries: deviations from the steady motion, or displacements and velociti
 
 import math
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from types import SimpleNamespace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -120,7 +121,7 @@ length."""
 
 CLOSEST = 4.0 * EPS  # part of a drive period next to the end in which no step is made
 
-Watch = Callable[[Any], Callable[..., None]]
+Watch = Callable[[SimpleNamespace], Callable[..., None]]
 """From a law of ``touch.TOUCHES`` to watch(motion, run, u, v, s, until, series, watcher), done at each step.
 The step leads from (u, v) at the clock of the run to `s`, in the law's own variable, at the clock `until`."""
 
@@ -158,7 +159,7 @@ def meet(motion, run, u, v, crosses, touches):
             hold(motion, run.clock, u, v)
 
 
-def _follow(law: Any, watch: Callable[..., None]) -> Callable[..., int]:
+def _follow(law: SimpleNamespace, watch: Callable[..., None]) -> Callable[..., int]:
     """`follower` for one law, so that the law is looked up once a touch and not once a step."""
     step, state, leave = law.step, law.state, law.leave
 

@@ -1,5 +1,6 @@
 """Finite rotations: elastica, backbone coefficients, periodic motions and the decay of deviations."""
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -31,13 +32,8 @@ def leaf(thickness: float = 0.7e-3, mass: float = 0.0) -> LeafSpring:
 def hook() -> LeafSpring:
     """A leg and a bend of 100 degrees: swings of either sign differ."""
     line = beam.Centreline(pieces=(beam.Straight(length=LEG), beam.Arc(radius=0.03, angle=1.75)))
-    return LeafSpring(
-        centreline=line,
-        sections=(STRIP, STRIP),
-        supports=("clamped", "free"),
-        tip=Tip(mass=5e-3),
-        tip_at=line.length,
-    )
+    others = dict(sections=(STRIP, STRIP), supports=("clamped", "free"), tip=Tip(mass=5e-3))
+    return LeafSpring(centreline=line, tip_at=line.length, **others)
 
 
 def bent(model: FiniteRotation, force: float) -> NDArray[np.float64]:
@@ -108,21 +104,15 @@ def test_backbone_does_not_know_the_modulus_and_hardly_the_thickness() -> None:
 
 def test_coupling_of_a_narrow_u_with_a_heavy_tip() -> None:
     """-(9/2800)(L/r)^2: the legs bow under the axial forces 6 EI y/(L^2 r) of the sway, but for order r/L."""
-    scaled = [
-        backbone_coefficient(folded_u(radius=r, thickness=0.02e-3, mass=1e3)).kappa * (r / LEG) ** 2
-        for r in (4e-3, 2e-3)
-    ]
-    assert 2 * scaled[1] - scaled[0] == pytest.approx(-9 / 2800, rel=5e-3)
+    springs = {r: folded_u(radius=r, thickness=0.02e-3, mass=1e3) for r in (4e-3, 2e-3)}
+    wide, narrow = (backbone_coefficient(u).kappa * (r / LEG) ** 2 for r, u in springs.items())
+    assert 2 * narrow - wide == pytest.approx(-9 / 2800, rel=5e-3)
 
 
-@pytest.mark.parametrize(
-    "spring",
-    [pytest.param(folded_u(), marks=pytest.mark.slow), leaf(), hook()],
-    ids=["folded_u", "leaf", "hook"],
-)
-def test_backbone_against_harmonic_balance(spring: LeafSpring) -> None:
+@pytest.mark.parametrize("drawn", [pytest.param(folded_u, marks=pytest.mark.slow), leaf, hook])
+def test_backbone_against_harmonic_balance(drawn: Callable[[], LeafSpring]) -> None:
     """Swings to either side, their amplitudes falling by half, to the limit of both."""
-    model, backbone = FiniteRotation.of(spring, 12), backbone_coefficient(spring, 12)
+    model, backbone = FiniteRotation.of(drawn(), 12), backbone_coefficient(drawn(), 12)
     first, shifts = periodic_motion(model, 1e-6).omega, []
     for amplitude in (2e-3, 4e-3):
         swings = [periodic_motion(model, side * amplitude, harmonics=3) for side in (1, -1)]
@@ -173,9 +163,8 @@ def test_deviations_from_a_driven_motion() -> None:
         turning = np.sqrt((detuning + k) * (detuning + 3 * k))
         close = 1e-3 * (amplitude / 4e-3) ** 2 + 1e-7
         assert motion.exponent() == pytest.approx(-decay / 2 + 1j * turning, rel=close)
-        assert motion.effective_period == pytest.approx(
-            2 * np.pi / (motion.omega + turning), rel=1e-5 * (amplitude / 1e-3) ** 2 + 1e-8
-        )
+        period, close = 2 * np.pi / (motion.omega + turning), 1e-5 * (amplitude / 1e-3) ** 2 + 1e-8
+        assert motion.effective_period == pytest.approx(period, rel=close)
         assert motion.tip(np.array([0.0]))[0] == pytest.approx(amplitude, rel=1e-9)
 
 

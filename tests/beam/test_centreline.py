@@ -7,16 +7,8 @@ import numpy as np
 
 from beam import Arc, Centreline, Straight
 
-WINDING = Centreline(
-    pieces=(
-        Straight(length=0.05),
-        Arc(radius=0.02, angle=2.0),
-        Straight(length=0.01),
-        Arc(radius=0.03, angle=-1.0),
-    ),
-    start=(0.1, -0.2),
-    heading=0.4,
-)
+LINE = Straight(length=0.05), Arc(radius=0.02, angle=2.0), Straight(length=0.01), Arc(radius=0.03, angle=-1.0)
+WINDING = Centreline(pieces=LINE, start=(0.1, -0.2), heading=0.4)
 
 
 def test_points_are_the_integral_of_the_tangent() -> None:

@@ -12,16 +12,10 @@ BARE = beam.StripSection(material=beam.BRASS, width=12e-3, thickness=0.65e-3)
 GLUED = replace(BARE, layer=beam.Layer(material=beam.DAMPING_TAPE, thickness=0.2e-3))
 
 
-def partly_covered(elements: int = 6) -> beam.Modes:
-    spring = beam.folded_u(
-        leg_length=0.13,
-        bend_radius=7.5e-3,
-        section=BARE,
-        tip=beam.Tip(mass=4e-3),
-        damped_section=GLUED,
-        damped_span=(0.01, 0.07),
-    )
-    return beam.natural_modes(beam.assemble(spring, elements), 12)
+def partly_covered() -> beam.Modes:
+    cover = dict(damped_section=GLUED, damped_span=(0.01, 0.07))
+    shape = dict(leg_length=0.13, bend_radius=7.5e-3, section=BARE, tip=beam.Tip(mass=4e-3))
+    return beam.natural_modes(beam.assemble(beam.folded_u(**shape, **cover), 6), 12)
 
 
 def test_closed_rules() -> None:
@@ -34,9 +28,8 @@ def test_closed_rules() -> None:
 
 
 def test_one_section_throughout_has_one_loss_factor() -> None:
-    modes = beam.natural_modes(
-        beam.assemble(beam.cantilever(length=0.13, section=GLUED, tip=beam.Tip(mass=1e-3)), 30), 10
-    )
+    leaf = beam.cantilever(length=0.13, section=GLUED, tip=beam.Tip(mass=1e-3))
+    modes = beam.natural_modes(beam.assemble(leaf, 30), 10)
     np.testing.assert_allclose(modes.loss_factors(), GLUED.bending_loss_factor, rtol=1e-9)
 
 
@@ -55,12 +48,11 @@ def test_strain_energy_is_the_first_order_of_complex_stiffness() -> None:
 
 
 def test_where_the_layer_lies_decides_which_mode_it_damps() -> None:
-    eta = partly_covered().loss_factors()
+    modes = partly_covered()
+    eta = modes.loss_factors()
     assert np.all(eta > beam.BRASS.loss_factor) and np.all(eta < GLUED.bending_loss_factor)
     assert eta.max() > 1.2 * eta.min()
-    np.testing.assert_allclose(
-        beam.StripDamping().decay_rates(modes := partly_covered()), eta * modes.omega, rtol=1e-9
-    )
+    np.testing.assert_allclose(beam.StripDamping().decay_rates(modes), eta * modes.omega, rtol=1e-9)
 
 
 def test_measured_decay_scales_the_rule_or_replaces_mode_1() -> None:

@@ -12,22 +12,13 @@ from scipy.integrate import solve_ivp
 import beam
 
 STRIP = beam.StripSection(material=beam.BRASS, width=12e-3, thickness=0.65e-3)
-THREE = {
-    "omega": [1.0, 2.0, 3.0],
-    "decay_rate": [0.1, 0.2, 0.0],
-    "phi": [1, 2, 3],
-    "participation": [3, 2, 1],
-}
+THREE = dict(omega=[1.0, 2.0, 3.0], decay_rate=[0.1, 0.2, 0.0], phi=[1, 2, 3], participation=[3, 2, 1])
+U = dict(leg_length=0.13, bend_radius=7.5e-3, section=STRIP)
 
 
 def u_modes(count: int = 12) -> beam.Modes:
-    readouts = {
-        "ball": beam.Readout(at=0.13 + 0.5 * np.pi * 7.5e-3),
-        "laser": beam.Readout(at=0.1, quantity="rotation"),
-    }
-    spring = beam.folded_u(
-        leg_length=0.13, bend_radius=7.5e-3, section=STRIP, tip=beam.Tip(mass=4e-3), readouts=readouts
-    )
+    ball, laser = beam.Readout(at=0.13 + 0.5 * np.pi * 7.5e-3), beam.Readout(at=0.1, quantity="rotation")
+    spring = beam.folded_u(**U, tip=beam.Tip(mass=4e-3), readouts={"ball": ball, "laser": laser})
     return beam.natural_modes(beam.assemble(spring), count)
 
 
@@ -35,13 +26,12 @@ def test_single_mode_is_equation_1() -> None:
     """Integrated numerically, the free motion returns after T, smaller by exp(-mu T / 2)."""
     model = beam.single_mode(free_period=40.80e-3, decay_rate=3.56)
     assert model.n_modes == 1 and model.phi[0] == model.participation[0] == 1.0
-    c, k = model.decay_rate[0], model.omega[0] ** 2
-    path = solve_ivp(
-        lambda t, y: [y[1], -c * y[1] - k * y[0]], (0.0, 40.80e-3), [1e-3, 0.2], rtol=1e-11, atol=1e-14
+    start, rates = (
+        np.array([1e-3, 0.2]),
+        np.array([[0.0, 1.0], [-(model.omega[0] ** 2), -model.decay_rate[0]]]),
     )
-    np.testing.assert_allclose(
-        path.y[:, -1], np.exp(-0.5 * 3.56 * 40.80e-3) * np.array([1e-3, 0.2]), rtol=1e-7
-    )
+    path = solve_ivp(lambda t, y: rates @ y, (0.0, 40.80e-3), start, rtol=1e-11, atol=1e-14)
+    np.testing.assert_allclose(path.y[:, -1], np.exp(-0.5 * 3.56 * 40.80e-3) * start, rtol=1e-7)
 
 
 def test_arrays_are_copied_and_read_only() -> None:
@@ -99,9 +89,8 @@ def test_uncoupled_modes_take_no_part_in_the_motion_of_the_tip() -> None:
         forced, driven = full.tip @ np.linalg.solve(dynamic, np.stack([full.tip, full.base_load], axis=1))
         gain = model.phi / (model.omega**2 - square)
         residual = model.static_compliance - np.sum(model.phi**2 / model.omega**2)
-        assert gain @ model.phi + residual == pytest.approx(
-            forced, rel=1e-5, abs=1e-6 * model.static_compliance
-        )
+        close = dict(rel=1e-5, abs=1e-6 * model.static_compliance)
+        assert gain @ model.phi + residual == pytest.approx(forced, **close)
         assert gain @ model.participation == pytest.approx(driven, rel=1e-5)
 
 
@@ -130,7 +119,7 @@ def test_the_package_keeps_its_word() -> None:
 
 @pytest.mark.parametrize("count", [1, 2, 4])
 def test_residual_mode_fulfils_the_sum_rules(count: int) -> None:
-    spring = beam.folded_u(leg_length=0.13, bend_radius=7.5e-3, section=STRIP, tip=beam.Tip(mass=5e-3))
+    spring = beam.folded_u(**U, tip=beam.Tip(mass=5e-3))
     model = beam.reduce(beam.natural_modes(beam.assemble(spring), 30), beam.ConstantRatio(ratio=0.01), count)
     whole = model.with_residual_mode()
     assert whole.n_modes == count + 1 and whole.omega[-1] > model.omega[-1]

@@ -14,14 +14,13 @@ from beam.export import mode_name
 RADIUS = 2.5e-3
 BARE = beam.StripSection(material=beam.BRASS, width=12e-3, thickness=0.65e-3)
 TAPED = replace(BARE, layer=beam.Layer(material=beam.DAMPING_TAPE, thickness=0.45e-3, both_sides=False))
+U = dict(leg_length=0.13, bend_radius=7.5e-3, section=BARE, damped_section=TAPED, tip=beam.Tip(mass=5e-3))
+DRAWN = dict(largest=0.01, ball_radius=RADIUS)
 
 
 @pytest.fixture(scope="module")
 def modes() -> beam.Modes:
-    spring = beam.folded_u(
-        leg_length=0.13, bend_radius=7.5e-3, section=BARE, damped_section=TAPED, tip=beam.Tip(mass=5e-3)
-    )
-    return beam.natural_modes(beam.assemble(spring), 4)
+    return beam.natural_modes(beam.assemble(beam.folded_u(**U)), 4)
 
 
 def read(path: Path):
@@ -42,15 +41,12 @@ def test_the_mesh_has_the_masses_of_the_strip_and_the_surface_of_the_ball(modes)
 
 
 def test_a_flat_u_is_drawn_with_the_slot_between_its_legs():
-    spring = beam.flat_u(
-        leg_length=0.13, bend_radius=7.5e-3, section=BARE, damped_section=TAPED, tip=beam.Tip(mass=5e-3)
-    )
+    spring = beam.flat_u(**U)
     mesh = beam.solid_spring(beam.natural_modes(beam.assemble(spring), 2), ball_radius=RADIUS)
     sizes = mesh.grid().compute_cell_sizes()
     volume = [float(sizes["Volume"][mesh.part == part].sum()) for part in (beam.STRIP, beam.LAYER)]
-    assert beam.BRASS.density * volume[0] + beam.DAMPING_TAPE.density * volume[1] == pytest.approx(
-        spring.strip_mass, rel=1e-9
-    )
+    mass = beam.BRASS.density * volume[0] + beam.DAMPING_TAPE.density * volume[1]
+    assert mass == pytest.approx(spring.strip_mass, rel=1e-9)
     middle = mesh.points[mesh.hexahedra].mean(axis=1)
     legs, bend = middle[middle[:, 0] < 0.13], middle[middle[:, 0] > 0.13]
     assert np.unique(np.abs(legs[:, 2]).round(9)).tolist() == [7.5e-3] and np.all(bend[:, 2] == 0.0)
@@ -104,9 +100,7 @@ def test_the_ball_moves_as_one_body_with_the_tip(modes):
 
 def test_mode_shapes_read_back(modes, tmp_path):
     rates = beam.StripDamping().decay_rates(modes)
-    path = beam.write_modes(
-        tmp_path / "modes.vtu", modes, decay_rates=rates, largest=0.01, ball_radius=RADIUS
-    )
+    path = beam.write_modes(tmp_path / "modes.vtu", modes, decay_rates=rates, **DRAWN)
     grid = read(path)
     names = [mode_name(modes, mode) for mode in range(4)]
     assert list(grid.point_data) == names
@@ -127,9 +121,8 @@ def test_mode_shapes_read_back(modes, tmp_path):
 
 @pytest.mark.parametrize("moved", [False, True])
 def test_a_mode_in_motion_loops_without_a_seam(modes, tmp_path, moved):
-    path, *frames = beam.write_mode_motion(
-        tmp_path / "sway & back.pvd", modes, 2, frames=8, moved=moved, largest=0.01, ball_radius=RADIUS
-    )
+    pvd = tmp_path / "sway & back.pvd"
+    path, *frames = beam.write_mode_motion(pvd, modes, 2, frames=8, moved=moved, **DRAWN)
     sets = ET.parse(path).getroot().findall("Collection/DataSet")
     assert [path.parent / entry.attrib["file"] for entry in sets] == frames and len(frames) == 8
     period = 2.0 * math.pi / modes.omega[2]

@@ -15,10 +15,8 @@ from beam.space import SpatialModes, SpatialSection, SpatialSpring, channel, fla
 STRIP = StripSection(material=BRASS, width=12e-3, thickness=0.65e-3)
 BALL = Tip(mass=4e-3, rotary_inertia=3e-8)
 LENGTH, RADIUS = 0.13, 7.5e-3
-U = Centreline(
-    pieces=(Straight(length=LENGTH), Arc(radius=RADIUS, angle=math.pi), Straight(length=LENGTH)),
-    start=(0.0, -RADIUS),
-)
+LEG = Straight(length=LENGTH)
+U = Centreline(pieces=(LEG, Arc(radius=RADIUS, angle=math.pi), LEG), start=(0.0, -RADIUS))
 MIDDLE = LENGTH + 0.5 * math.pi * RADIUS
 
 
@@ -34,8 +32,7 @@ def spring(line: Centreline, section: SpatialSection, end: str, tip: Tip, tip_at
 
 
 def straight(section: SpatialSection, tip: Tip | None = None, **others) -> SpatialSpring:
-    line = Centreline(pieces=(Straight(length=LENGTH),))
-    return spring(line, section, "free", tip or Tip(), LENGTH, **others)
+    return spring(Centreline(pieces=(LEG,)), section, "free", tip or Tip(), LENGTH, **others)
 
 
 def bent(section: SpatialSection, tip: Tip = BALL, **others) -> SpatialSpring:
@@ -53,9 +50,8 @@ def turning(modes: SpatialModes) -> np.ndarray:
 
 
 def test_the_plane_family_is_that_of_the_plane_model():
-    plane = beam.natural_modes(
-        beam.assemble(beam.folded_u(leg_length=LENGTH, bend_radius=RADIUS, section=STRIP, tip=BALL)), 8
-    )
+    folded = beam.folded_u(leg_length=LENGTH, bend_radius=RADIUS, section=STRIP, tip=BALL)
+    plane = beam.natural_modes(beam.assemble(folded), 8)
     space = spatial_modes(bent(upright(STRIP)), 16)
     inside = ~out_of_plane(space)
     np.testing.assert_allclose(space.frequencies_hz[inside][:8], plane.frequencies_hz, rtol=5e-5)
@@ -112,13 +108,9 @@ def test_torsion_with_warping_held_at_the_clamp_solves_vlasovs_equation():
 
 def test_sideways_bending_of_a_straight_strip_is_that_of_the_frequency_equation():
     section, tip = upright(STRIP), Tip(mass=4e-3, rotary_inertia=2e-7)
-    uniform = beam.UniformBeam(
-        length=LENGTH,
-        bending_stiffness=section.out_of_plane_stiffness,
-        mass_per_length=section.mass_per_length,
-        tip_mass=tip.mass,
-        tip_rotary_inertia=tip.rotary_inertia,
-    )
+    body = dict(tip_mass=tip.mass, tip_rotary_inertia=tip.rotary_inertia)
+    strip = dict(bending_stiffness=section.out_of_plane_stiffness, mass_per_length=section.mass_per_length)
+    uniform = beam.UniformBeam(length=LENGTH, **strip, **body)
     modes = spatial_modes(straight(section, tip, drive=(0.0, 0.0, 1.0)), 30)
     moves = modes.phi > 1e-6
     exact = beam.exact_modes(uniform, 3)
@@ -207,11 +199,8 @@ def test_second_moments_of_a_channel_by_adding_up_little_squares():
     behind = 3.0 * p**2 / (6.0 * p + b - t)  # the shear centre, behind the midline of the web
     assert section.shear_offset - behind == pytest.approx(centroid - 0.5 * t, rel=1e-9)
     e = BRASS.youngs_modulus
-    in_plane, out_of_plane = (
-        e * area * (np.sum(arm**2) + y.size * step**2 / 12.0) for arm in (y - centroid, z)
-    )
-    assert section.in_plane_stiffness == pytest.approx(in_plane, rel=1e-9)
-    assert section.out_of_plane_stiffness == pytest.approx(out_of_plane, rel=1e-9)
+    stiffness = [e * area * (np.sum(arm**2) + y.size * step**2 / 12.0) for arm in (y - centroid, z)]
+    assert [section.in_plane_stiffness, section.out_of_plane_stiffness] == pytest.approx(stiffness, rel=1e-9)
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,7 @@ import math
 import numpy as np
 from oscillators import modes_on_stop, newton
 
-from contact import ImpactOscillator, State, simulate
+from contact import ImpactOscillator, State
 from contact.engine.event_loop import DONE, advance
 from contact.engine.recorder import strobes_only
 from contact.engine.start import start_of
@@ -105,27 +105,14 @@ def at_a_strobe() -> np.ndarray:
     return start_of(oscillator().motion(), State.rest(1), 0, 0.0)[2]
 
 
-def rest_of(single: ImpactOscillator) -> tuple[np.ndarray, np.ndarray]:
-    """Deviation of the spring at rest."""
-    return start_of(single.motion(), State.rest(1), 0, 0.0)[:2]
-
-
 ROUNDINGS = 40.0
 """Roundings by which the two loops may differ in a period: both make some ten operations on each term of the
 motion in each of a flight's parts; the worst seen in two million periods is 11."""
 
 
-def general_orbit(single: ImpactOscillator, begin: State, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Strobes and impacts by the general loop, through `simulate`."""
-    run = simulate(single, begin, periods=count)
-    points = np.column_stack(
-        [run.strobe_displacement[:, 0], run.strobe_velocity[:, 0] / single.model.omega[0]]
-    )
-    return points, run.strobe_impacts
-
-
 def compared(single: ImpactOscillator, periods: int) -> tuple[int, int]:
-    """Impacts, and periods that the fast loop leaves to the general one, of motions that agree."""
-    worst, impacts, left = Period(single).compare(*rest_of(single), periods)
+    """Impacts, and periods that the fast loop leaves to the general one, of motions from rest that agree."""
+    u, v, _ = start_of(single.motion(), State.rest(1), 0, 0.0)
+    worst, impacts, left = Period(single).compare(u, v, periods)
     assert worst < ROUNDINGS
     return impacts, left

@@ -97,11 +97,8 @@ def equation_1(
     frequency: float, law: ContactLaw | None = None, *, gap: float = 1.0, excess: float | None = None
 ) -> ImpactOscillator:
     """Eq. (1) of the letter, with its restitution of 0.1 by default; in gaps unless `gap` [m] is given."""
-    oscillator = ImpactOscillator(
-        model=single_mode(free_period=40.80e-3, decay_rate=3.56),
-        stop=Stop(gap=gap, law=law or newton(0.1)),
-        drive=HarmonicDrive(frequency=frequency),
-    )
+    model, drive = single_mode(free_period=40.80e-3, decay_rate=3.56), HarmonicDrive(frequency=frequency)
+    oscillator = ImpactOscillator(model=model, stop=Stop(gap=gap, law=law or newton(0.1)), drive=drive)
     return oscillator if excess is None else oscillator.with_excess(excess)
 
 

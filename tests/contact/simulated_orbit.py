@@ -52,9 +52,8 @@ def on_stop(
     model: ModalModel, frequency: float, law: contact.ContactLaw = HERTZ, gap: float = GAP
 ) -> contact.ImpactOscillator:
     """A spring before its stop, driven at `frequency` [Hz]."""
-    return contact.ImpactOscillator(
-        model=model, stop=contact.Stop(gap=gap, law=law), drive=contact.HarmonicDrive(frequency=frequency)
-    )
+    stop, drive = contact.Stop(gap=gap, law=law), contact.HarmonicDrive(frequency=frequency)
+    return contact.ImpactOscillator(model=model, stop=stop, drive=drive)
 
 
 def settled(

@@ -52,13 +52,8 @@ def test_folds_against_a_downward_scan(oscillator: ImpactOscillator, period: int
     assert fold.admissible and apart(fold.multipliers[:1], np.ones(1)) < 1e-7
     node = family.at_speed(1.3 * fold.speed)
     assert node.stable and node.admissible and node.excess > fold.excess
-    end = orbits.orbit_end(
-        StroboscopicMap(oscillator=oscillator),
-        replace(node.strobe_state(), time=0.0),
-        node.excess,
-        most_cycles=10_000,
-        relative=1e-2,
-    )
+    strobed, start = StroboscopicMap(oscillator=oscillator), replace(node.strobe_state(), time=0.0)
+    end = orbits.orbit_end(strobed, start, node.excess, most_cycles=10_000, relative=1e-2)
     assert end.lost < fold.excess < end.held
     assert end.kind == "fold" and end.excess == pytest.approx(fold.excess, abs=1e-13)
     kick = family.kicks.fold()
@@ -72,9 +67,8 @@ def test_an_end_by_period_doubling_is_named_and_exact() -> None:
     branch = orbits.follow(family, family.at_speed(1.0 * unit), low=0.5 * unit, high=1.5 * unit)
     (doubled,) = branch.of_kind("period doubling")
     start = family.at_speed(1.1 * doubled.speed, doubled)
-    end = orbits.orbit_end(
-        StroboscopicMap(oscillator=HARD), start.strobe_state(), start.excess, most_cycles=4000
-    )
+    strobed = StroboscopicMap(oscillator=HARD)
+    end = orbits.orbit_end(strobed, start.strobe_state(), start.excess, most_cycles=4000)
     assert end.kind == "period doubling" and end.lost < end.excess < end.held
     assert end.excess == pytest.approx(doubled.excess, rel=1e-9)
 
@@ -101,10 +95,8 @@ def test_no_bracket_closes_because_a_long_step_fell_off(first_step: float, relat
             (StroboscopicMap(oscillator=oscillator), excess),
             (nordmark, nordmark.excess(contact.MapFamily(nordmark, period).fold().rho)),
         ):
-            start = orbits.born(strobed)
-            end = orbits.orbit_end(
-                strobed, start.end, 1e-3, most_cycles=1000, relative=relative, first_step=first_step
-            )
+            steps = dict(relative=relative, first_step=first_step)
+            end = orbits.orbit_end(strobed, orbits.born(strobed).end, 1e-3, most_cycles=1000, **steps)
             assert (end.period, end.impacts, end.kind) == (period, 1, "fold")
             assert end.lost <= exact <= end.held
             assert end.held - end.lost <= 1.0001 * max(relative * abs(end.held), 1e-7)
@@ -164,9 +156,8 @@ def test_a_narrow_range_or_a_wrong_band_has_no_kick_fold() -> None:
 )
 def test_a_doubling_of_the_period_is_seen_by_the_simulation(oscillator, period, middle):
     family, unit = orbits.Shooting(oscillator=oscillator, period=period), oscillator.unit_speed
-    branch = orbits.follow(
-        family, family.at_speed(middle * unit), low=0.8 * middle * unit, high=1.2 * middle * unit
-    )
+    low, high = 0.8 * middle * unit, 1.2 * middle * unit
+    branch = orbits.follow(family, family.at_speed(middle * unit), low=low, high=high)
     (doubled,) = branch.of_kind("period doubling")
     assert np.min(np.abs(doubled.multipliers + 1)) < 1e-7
     for part, stable in ((0.99, False), (1.01, True)):

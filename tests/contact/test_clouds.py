@@ -5,11 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from letters_spring import HERTZ
-from oscillators import GAP, PHI, equation_1, newton, spring
+from oscillators import GAP, PHI, equation_1, modes_on_stop, newton, spring
 from scipy.signal import lfilter
 from simulated_orbit import beam
 
-from beam import ModalModel
 from contact import NordmarkMap, NotPeriodic, State, StroboscopicMap, UnresolvedCrossing, band
 from contact.maps.nordmark_orbits import MapFamily
 from contact.orbits import MaximalFamily, PeriodicOrbit, Shooting, cloud, orbit_exponents
@@ -40,9 +39,8 @@ def settled(name: str) -> tuple[object, object, float]:
 def test_a_constant_amplitude_is_no_change_and_a_new_one_leaves_the_state(name: str) -> None:
     strobed, state, excess = settled(name)
     whole = strobed.orbit(state, 12)
-    same = strobed.at(2.0 * excess).orbit(
-        state, 12, factors=np.full(12, (1.0 + excess) / (1.0 + 2.0 * excess))
-    )
+    ratio = (1.0 + excess) / (1.0 + 2.0 * excess)
+    same = strobed.at(2.0 * excess).orbit(state, 12, factors=np.full(12, ratio))
     assert same.points == pytest.approx(whole.points, rel=1e-11, abs=1e-12 * strobed.scale)
     assert same.impacts.tolist() == whole.impacts.tolist()
     levels = excess + np.repeat([0.0, 1e-3, -1e-4, 5.0], 4)
@@ -66,15 +64,11 @@ def noise(count: int, sigma: float, memory: float) -> np.ndarray:
 def test_the_loop_of_one_mode_is_the_general_one_at_any_amplitudes() -> None:
     """A second mode without weight at the tip takes the general loop."""
     single = equation_1(20.9, NEWTON).with_excess(1e-3)
-    model = single.model
-    idle = ModalModel(
-        omega=np.append(model.omega, 900.0),
-        decay_rate=np.append(model.decay_rate, 1.0),
-        phi=np.append(model.phi, 0.0),
-        participation=np.append(model.participation, 0.0),
-    )
+    idle = dict(omega=900.0, decay_rate=1.0, phi=0.0, participation=0.0)
+    rows = (np.append(getattr(single.model, name), number) for name, number in idle.items())
+    double = modes_on_stop(*rows, law=NEWTON, gap=1.0, drive=20.9).with_excess(1e-3)
     factors, found = noise(400, 1e-3, 0.5), []
-    for oscillator in (single, replace(single, model=idle)):
+    for oscillator in (single, double):
         strobed = StroboscopicMap(oscillator=oscillator)
         found.append(strobed.orbit(strobed.steady(), 400, factors=factors))
     assert found[0].impacts.sum() > 100 and np.array_equal(found[0].impacts, found[1].impacts)

@@ -61,10 +61,8 @@ def two_modes(first: float, second: float, e: float, lead: float) -> tuple[Impac
     """Mode 1 of `first` gaps, `lead` [rad] before its peak; mode 2 of `second` gaps, rising through zero."""
     oscillator = spring(2, newton(e), excess=None, damping=0.0)
     amplitude = GAP / PHI[:2] * np.array([first, second])
-    return oscillator, State(
-        displacement=[amplitude[0] * math.cos(lead), 0.0],
-        velocity=[amplitude[0] * OMEGA[0] * math.sin(lead), amplitude[1] * OMEGA[1]],
-    )
+    velocity = amplitude * OMEGA[:2] * [math.sin(lead), 1.0]
+    return oscillator, State(displacement=amplitude * [math.cos(lead), 0.0], velocity=velocity)
 
 
 @pytest.mark.parametrize("second, returns", [(0.056, False), (0.2, True)])

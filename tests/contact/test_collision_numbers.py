@@ -17,18 +17,12 @@ from contact.laws import ContactLaw, HertzContact, HuntCrossley, LinearContact
 from contact.simulation import simulate
 from contact.trajectory import Impacts, State
 
+CASES = [(6, newton(0.3), 21.5), (6, HertzContact(stiffness=3e7), 21.5), (2, newton(1.0), 12.0)]
+CASES += [(4, HuntCrossley(stiffness=3e7, dissipation=2.0), 21.5)]
+CASES += slow((6, LinearContact(stiffness=3e4), 21.5))
 
-@pytest.mark.parametrize(
-    "n_modes, law, frequency",
-    [
-        (6, newton(0.3), 21.5),
-        (6, HertzContact(stiffness=3e7), 21.5),
-        *slow((6, LinearContact(stiffness=3e4), 21.5)),
-        (4, HuntCrossley(stiffness=3e7, dissipation=2.0), 21.5),
-        (2, newton(1.0), 12.0),
-    ],
-    ids=repr,
-)
+
+@pytest.mark.parametrize("n_modes, law, frequency", CASES, ids=repr)
 def test_every_number_is_what_its_definition_says(n_modes: int, law: ContactLaw, frequency: float) -> None:
     """The virtual motions by complex exponentials on a fine grid, collision by collision of a long run.
 
@@ -65,10 +59,8 @@ def test_every_number_is_what_its_definition_says(n_modes: int, law: ContactLaw,
         def hump(motion, near):
             grid = near + np.linspace(-0.6, 0.6, 241) * period
             speed = motion(grid)[1]
-            tops = [
-                brentq(lambda t: motion(t)[1], grid[i], grid[i + 1], xtol=1e-16)
-                for i in np.flatnonzero((speed[:-1] > 0) & (speed[1:] <= 0))
-            ]
+            turns = np.flatnonzero((speed[:-1] > 0) & (speed[1:] <= 0))
+            tops = [brentq(lambda t: motion(t)[1], grid[i], grid[i + 1], xtol=1e-16) for i in turns]
             return min(tops, key=lambda t: abs(t - near))
 
         def sides(motion, near):
@@ -151,10 +143,9 @@ def test_minimum_of_the_outgoing_motion_ends_a_collision(before_minimum: float) 
 
 
 def test_touches_of_another_program_need_all_their_numbers() -> None:
+    none = dict(times=np.zeros((2, 0)), states=np.zeros((2, 0, 2, 1)))
     with pytest.raises(InvalidValue, match="numbers has loss; it must have approach, kind, loss, rebound"):
-        Impacts.of_states(
-            beam(22.2, HERTZ, modes=1), times=np.zeros((2, 0)), states=np.zeros((2, 0, 2, 1)), loss=[]
-        )
+        Impacts.of_states(beam(22.2, HERTZ, modes=1), **none, loss=[])
 
 
 @pytest.mark.parametrize("frequency", [20.90, 22.20, 23.40])
@@ -170,9 +161,8 @@ def test_two_relations_of_a_single_contact_of_the_letters_spring(frequency: floa
         assert abs(c.restitution**2 - (1 - c.kick) ** 2 - 2 * a * c.shift / v**2) < 3e-3
         assert abs(c.delay * a / v - (1 + c.restitution - c.kick)) < 3e-3
         # shift = kick v t_c / 2 to the same order: the contact acts at its middle
-        assert c.restitution**2 == pytest.approx(
-            (1 - c.kick) ** 2 + c.kick * c.contact_time * a / v, abs=6e-3
-        )
+        square = (1 - c.kick) ** 2 + c.kick * c.contact_time * a / v
+        assert c.restitution**2 == pytest.approx(square, abs=6e-3)
         kicks.append(c.kick)
         restitutions.append(c.restitution)
     # slow approaches are not kicked at all, and the kick rises with the speed

@@ -19,7 +19,6 @@ from contact.integrators import (
 )
 
 LOAD, REFUSED = np.array([70.0, -150.0]), "load (is|drives)"
-CHANGE = orbits.Change(gap=1.0)
 METHODS = [Exact(), *(kind(step=1e-5) for kind in (CentralDifference, GeneralisedAlpha, Splitting))]
 HARD = [SampledFlight(points=500), MoreauJean(step=1e-5), NonsmoothGeneralisedAlpha(step=1e-5, rho=0.8)]
 
@@ -38,6 +37,11 @@ def thrown(rest):
 
 def followed(o, rest, method):
     return simulate(o, thrown(rest), periods=2, method=method).end.displacement - rest
+
+
+def diagram(o, rest):
+    start, seen = strobed(o, -0.2).steady(), dict(observe=lambda points: points[:, 1], settle_cycles=9)
+    return orbits.orbit_diagram(strobed(o), [-0.2, -0.1], start, **seen).end.displacement - rest
 
 
 # each call takes an oscillator and its rest position
@@ -59,16 +63,7 @@ CALLS = {
     ),
     "born": lambda o, rest: orbits.born(strobed(o), 1e-3, most_cycles=200).end.displacement - rest,
     "exponents": lambda o, rest: orbits.map_exponents(strobed(o), thrown(rest), 20)[0].values,
-    "diagram": lambda o, rest: (
-        orbits.orbit_diagram(
-            strobed(o),
-            [-0.2, -0.1],
-            strobed(o, -0.2).steady(),
-            observe=lambda points: points[:, 1],
-            settle_cycles=9,
-        ).end.displacement
-        - rest
-    ),
+    "diagram": diagram,
     "scan": lambda o, rest: orbits.AmplitudeScan(oscillator=o, most_cycles=128)(20.0, [-0.2, -0.1]).period,
 }
 FOLLOWED = {
@@ -83,7 +78,9 @@ WITHOUT = {
     "fold": lambda o, rest: orbits.fold_excess(strobed(o), 3),
     "kick": lambda o, rest: orbits.KickFamily(oscillator=o, period=1),
     "shooting": lambda o, rest: orbits.Shooting(oscillator=o, period=1),
-    "changes": lambda o, rest: orbits.motion_derivatives(o, thrown(rest), [CHANGE], periods=1),
+    "changes": lambda o, rest: orbits.motion_derivatives(
+        o, thrown(rest), [orbits.Change(gap=1.0)], periods=1
+    ),
 }
 
 

@@ -142,18 +142,11 @@ def test_energy_is_kept_over_1e4_contacts_of_a_conservative_spring(law, allowed)
     assert np.max(np.abs(run.impacts.loss[finished])) < 1e-13 * first
 
 
-@pytest.mark.parametrize(
-    "law",
-    [
-        LOSSY,
-        HuntCrossley(stiffness=1e6, dissipation=0.2),
-        DASHPOT,
-        LinearContact(stiffness=1e5, damping=60.0),
-        LinearContact(stiffness=2e4, damping=100.0),
-        newton(0.4),
-    ],
-    ids=name_of,
-)
+LOSING = [LOSSY, HuntCrossley(stiffness=1e6, dissipation=0.2), DASHPOT, newton(0.4)]
+LOSING += [LinearContact(stiffness=k, damping=c) for k, c in ((1e5, 60.0), (2e4, 100.0))]
+
+
+@pytest.mark.parametrize("law", LOSING, ids=name_of)
 @pytest.mark.parametrize("n_modes", [1, 6])
 def test_losses_reported_are_the_energy_that_is_gone(n_modes, law):
     oscillator = spring(n_modes, law, damping=0.0)
@@ -184,6 +177,3 @@ def test_hunt_crossley_never_pulls() -> None:
     run = simulate(oscillator, state, duration=0.05, times=times)
     acceleration = np.diff(run.velocity[:, 0]) / np.diff(times)
     assert np.max(acceleration) < -50.0 + 50.0 * 1e-6
-
-
-# ------------------------------------------------------------------------------------- the length of a step

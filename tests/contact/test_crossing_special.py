@@ -218,9 +218,8 @@ def test_on_the_wall_and_pressed_is_refused():
         motion, base, u, v, _du, _dv = on_the_wall(generator, 5, order)
         assert search(motion, base, u, v, 0.3 * motion.period, order)[0] in (CROSSES, FREE)
         # everything reversed, the stop too: the same derivatives vanish, the next one has the other sign
-        mirrored = motion._replace(
-            tip_sine=-motion.tip_sine, tip_cosine=-motion.tip_cosine, gap=-motion.gap, level=-motion.level
-        )
+        names = "tip_sine", "tip_cosine", "gap", "level"
+        mirrored = motion._replace(**{name: -getattr(motion, name) for name in names})
         assert search(mirrored, base, -u, -v, 0.3 * motion.period, order) == (UNRESOLVED, 0.0)
 
 

@@ -22,9 +22,8 @@ equation_1 = partial(oscillators.equation_1, gap=GAP)
 @pytest.mark.parametrize(("frequency", "part"), [(22.20, 0.8), (20.90, 0.9), (23.40, 0.9)])
 def test_a_motion_settles_on_its_orbit_though_the_strobe_falls_into_the_wait(frequency, part):
     """The tip touches a quarter of a period after the strobe, and waits there over the next one."""
-    strobed = contact.StroboscopicMap(
-        oscillator=equation_1(frequency, contact.DelayedRestitution(restitution=0.1, delay=part / frequency))
-    ).at(0.3)
+    law = contact.DelayedRestitution(restitution=0.1, delay=part / frequency)
+    strobed = contact.StroboscopicMap(oscillator=equation_1(frequency, law)).at(0.3)
     fast = contact.State(displacement=np.zeros(1), velocity=np.array([2.0]))
     settled = settle(strobed, fast, most_cycles=4000)
     assert settled.period > 1 and settled.impacts == 1
@@ -78,9 +77,8 @@ def test_a_wait_longer_than_the_free_return_holds_the_tip_and_feeds_the_motion()
     """Slower than a delay/2 the tip is held while it would fly off: period 1 far below grazing."""
     frequency, delay = 23.40, 2e-3
     slow = 0.5 * (2.0 * math.pi * frequency) ** 2 * GAP * delay
-    family = Shooting(
-        oscillator=equation_1(frequency, contact.DelayedRestitution(restitution=0.1, delay=delay)), period=1
-    )
+    law = contact.DelayedRestitution(restitution=0.1, delay=delay)
+    family = Shooting(oscillator=equation_1(frequency, law), period=1)
     for part in (0.3, 0.6, 0.9):
         orbit = family.at_speed(part * slow)
         assert orbit.excess < -0.4 and orbit.stable and orbit.admissible and touches(orbit) == 1

@@ -28,9 +28,8 @@ def model_of(mass: float, count: int) -> ModalModel:
 def whole_collision(mass: float, count: int, restitution: float) -> contact.Collision:
     """The collision that ends the steady motion at excess 0.013, 22.2 Hz."""
     stop, drive = contact.Stop(gap=GAP, law=newton(restitution)), contact.HarmonicDrive(frequency=22.2)
-    return contact.first_collision(
-        contact.ImpactOscillator(model=model_of(mass, count), stop=stop, drive=drive).with_excess(0.013)
-    )
+    oscillator = contact.ImpactOscillator(model=model_of(mass, count), stop=stop, drive=drive)
+    return contact.first_collision(oscillator.with_excess(0.013))
 
 
 def test_the_collision_of_a_bare_tip_has_a_limit_that_forgets_the_restitution():

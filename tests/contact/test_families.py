@@ -88,11 +88,10 @@ def test_above_the_fold_are_a_saddle_and_a_node_and_below_it_nothing(found: tupl
     for orbit in (saddle, node):
         assert orbit.excess == pytest.approx(0.9 * fold.excess, rel=1e-8)
     assert node.stable and not saddle.stable and node.admissible
+    apart = (node.speed - saddle.speed) / math.sqrt(0.1)
     for part in (1e-2, 1e-4, 1e-6):  # between two steps of the branch; speeds part as the square root
         low, high = family.orbits((1.0 - part) * fold.excess)
-        assert (high.speed - low.speed) / math.sqrt(part) == pytest.approx(
-            (node.speed - saddle.speed) / math.sqrt(0.1), rel=0.1
-        )
+        assert (high.speed - low.speed) / math.sqrt(part) == pytest.approx(apart, rel=0.1)
 
 
 def test_multipliers_fall_in_size_and_tell_stability(found: tuple[Family, Orbit]) -> None:

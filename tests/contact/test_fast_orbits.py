@@ -11,12 +11,8 @@ from contact.orbits import Shooting, fold_of, orbit_end, settle
 from contact.orbits.branches.family_curve import whole_branch
 
 pytestmark = pytest.mark.filterwarnings("ignore::beam.SuspiciousValue")
-SWEEP = [
-    (m, e, part)
-    for m in (1, 2, 3)
-    for e in (0.1, 0.3, 0.5, 0.7, 0.9)
-    for part in np.arange(0.505, m + 1.0, 0.02)
-]
+PARTS = {m: np.arange(0.505, m + 1.0, 0.02) for m in (1, 2, 3)}
+SWEEP = [(m, e, part) for m in PARTS for e in (0.1, 0.3, 0.5, 0.7, 0.9) for part in PARTS[m]]
 """Period, restitution, f T: below f T = 2 the folds of p1 meet the stop faster than 2 times 2 pi f gap."""
 
 

@@ -22,7 +22,8 @@ def mode(cubic: tuple[float, float] = U, frequency: float = 22.2, **others: floa
     return NonlinearMode(stiffness=stiffness, inertia=inertia, frequency=frequency, **numbers)
 
 
-def acceleration(one: NonlinearMode, force: float):
+def solved(one: NonlinearMode, force: float, span: tuple[float, float], start: object, **events: object):
+    """The motion without a stop, by another integrator."""
     square, decay, b, a, w = one.numbers
 
     def rate(t: float, y: np.ndarray) -> list[float]:
@@ -30,7 +31,8 @@ def acceleration(one: NonlinearMode, force: float):
         pull = force * math.cos(w * t) - decay * v - square * (x + b * x**3) - a * x * v**2
         return [v, pull / (1.0 + a * x**2)]
 
-    return rate
+    settings = dict(method="DOP853", rtol=1e-13, atol=1e-16, max_step=one.period / 40, dense_output=True)
+    return solve_ivp(rate, span, start, **settings, **events)
 
 
 def decay_rate(one: NonlinearMode) -> float:
@@ -67,8 +69,7 @@ def test_a_motion_against_another_integrator(cubic, excess: float, digits: float
     t, y, hits = 0.0, np.array(one.steady() * 0.9) * [1.0, root], 0
     end = 6 * one.period
     while t < end:
-        fine = dict(method="DOP853", rtol=1e-13, atol=1e-16, max_step=one.period / 40)
-        run = solve_ivp(acceleration(one, force), (t, end), y, events=gap_closes, **fine)
+        run = solved(one, force, (t, end), y, events=gap_closes)
         t, y = run.t[-1], run.y[:, -1]
         if run.status == 1:
             y, hits = np.array([GAP * (1 - 1e-15), -one.restitution * y[1]]), hits + 1
@@ -93,8 +94,7 @@ def test_factors_are_those_of_the_force() -> None:
 def test_grazing_motion_touches_at_rest_and_nowhere_else() -> None:
     one = mode()
     force, touch = one.grazing
-    fine = dict(method="DOP853", rtol=1e-13, atol=1e-16, dense_output=True)
-    run = solve_ivp(acceleration(one, force), (touch, touch + one.period), [GAP, 0.0], **fine)
+    run = solved(one, force, (touch, touch + one.period), [GAP, 0.0])
     np.testing.assert_allclose(run.y[:, -1], [GAP, 0.0], atol=1e-10)
     assert run.sol(np.linspace(touch, touch + one.period, 1001))[0].max() < GAP * (1 + 1e-12)
     below, above = one.at(-1e-9), one.at(1e-7)
@@ -114,8 +114,8 @@ def test_effective_period_and_decay_rate(cubic: tuple[float, float], close: floa
         force, touch = one.grazing
         starts, h = np.array([[GAP, 0.0]] * 4), 1e-5 * GAP
         starts += h * np.array([[1.0, 0.0], [-1.0, 0.0], [0.0, 200.0], [0.0, -200.0]])
-        span, fine = (touch, touch + one.period), {"method": "DOP853", "rtol": 1e-12, "atol": 1e-15}
-        runs = [solve_ivp(acceleration(one, force), span, y, **fine, dense_output=True) for y in starts]
+        span = touch, touch + one.period
+        runs = [solved(one, force, span, y) for y in starts]
         ends = np.array([run.y[:, -1] for run in runs])
         monodromy = np.array([ends[0] - ends[1], (ends[2] - ends[3]) / 200.0]).T / (2 * h)
         det, trace = np.linalg.det(monodromy), np.trace(monodromy)
@@ -136,12 +136,10 @@ def test_effective_period_and_decay_rate(cubic: tuple[float, float], close: floa
 
 def test_the_u_loses_periods_that_the_leaf_keeps() -> None:
     """Born at 1e-3: Eq. (1), a leaf and the letter say 3, 4, 5, 6, 8 at the first five frequencies."""
-    born = {
-        cubic: [born_period(mode(cubic, f, gap=10.7e-3), 1e-3) for f in FREQUENCIES[:5]]
-        for cubic in (LINEAR, LEAF, U)
-    }
-    assert born[LINEAR] == born[LEAF] == [3, 4, 5, 6, 8]
-    assert sum(a == b for a, b in zip(born[U], born[LEAF], strict=True)) <= 1
+    rows = ([mode(cubic, f, gap=10.7e-3) for f in FREQUENCIES[:5]] for cubic in (LINEAR, LEAF, U))
+    linear, leaf, u = ([born_period(one, 1e-3) for one in row] for row in rows)
+    assert linear == leaf == [3, 4, 5, 6, 8]
+    assert sum(a == b for a, b in zip(u, leaf, strict=True)) <= 1
 
 
 def test_a_tip_pressed_against_the_stop_leaves_it_when_the_force_turns() -> None:
@@ -151,8 +149,7 @@ def test_a_tip_pressed_against_the_stop_leaves_it_when_the_force_turns() -> None
     held = square * (GAP + one.stiffness * GAP**3)
     one = one.at(1.2 * held / one.grazing[0] - 1.0)
     release = math.acos(1 / 1.2) / w
-    rate, fine = acceleration(one, 1.2 * held), {"rtol": 1e-13, "atol": 1e-16}
-    run = solve_ivp(rate, (release, one.period), [GAP, 0.0], method="DOP853", **fine)
+    run = solved(one, 1.2 * held, (release, one.period), [GAP, 0.0])
     assert run.y[0].max() <= GAP
     found = one.orbit(np.array([GAP, 0.0]), 1)
     np.testing.assert_allclose(found.end * [1.0, math.sqrt(square)], run.y[:, -1], rtol=1e-9)

@@ -50,10 +50,8 @@ def errors(make, law: ContactLaw, duration: float, counts, tries: int = 16):
     touch = exact.impacts.start[0] if len(exact.impacts) else duration
     found = []
     for count in counts:
-        ends = [
-            simulate(oscillator, THROWN, duration=duration, method=make(step=touch / (count + i / tries))).end
-            for i in range(tries)
-        ]
+        steps = [touch / (count + i / tries) for i in range(tries)]
+        ends = [simulate(oscillator, THROWN, duration=duration, method=make(step=h)).end for h in steps]
         away = [PHI[:3] * OMEGA[:3] * (end.displacement - exact.end.displacement) for end in ends]
         found.append(math.sqrt(np.mean(np.square(away))))
     return np.array(found)
@@ -75,9 +73,7 @@ def test_the_velocity_across_an_impact_falls_with_the_root_of_the_step():
     reference = simulate(oscillator, THROWN, **arguments).velocity
     counts, norms = np.array([200, 800, 3200]), []
     for count in counts:
-        runs = [
-            simulate(oscillator, THROWN, **arguments, method=MOREAU_JEAN(step=touch / (count + i / 16)))
-            for i in range(16)
-        ]
+        steps = [touch / (count + i / 16) for i in range(16)]
+        runs = [simulate(oscillator, THROWN, **arguments, method=MOREAU_JEAN(step=h)) for h in steps]
         norms.append(math.sqrt(np.mean([(run.velocity - reference) ** 2 for run in runs])))
     assert -np.polyfit(np.log(counts), np.log(norms), 1)[0] == pytest.approx(0.5, abs=0.1)

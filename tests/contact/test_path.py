@@ -16,6 +16,7 @@ from contact.orbits import Branch, Shooting, follow, follow_path
 from contact.orbits.branches.events import is_torus, torus
 from contact.sensitivity.change import change_along
 
+pytestmark = pytest.mark.filterwarnings("ignore::beam.SuspiciousValue")
 PATH = partial(two_masses, force=1.0)
 
 LAWS = {
@@ -67,7 +68,6 @@ def curve(request) -> Branch:
     return followed(0.3, 1, request.param, 0.42)
 
 
-@pytest.mark.filterwarnings("ignore::beam.SuspiciousValue")
 def test_touches_are_gained_and_lost_along_the_curve(curve: Branch) -> None:
     """Simulated motions repeat the curve."""
     assert len(decided(curve)) > 10
@@ -96,14 +96,12 @@ def decided(branch: Branch) -> list[tuple[str, float]]:
 
 
 @pytest.mark.slow
-@pytest.mark.filterwarnings("ignore::beam.SuspiciousValue")
 def test_starts_with_one_and_two_touches_lead_along_the_same_curve() -> None:
     places = [decided(followed(w, touches, 0.24, 0.42)) for w, touches in ((0.3, 1), (0.4, 2))]
     assert [kind for kind, _ in places[0]] == [kind for kind, _ in places[1]]
     assert [p for _, p in places[0]] == pytest.approx([p for _, p in places[1]], abs=1e-8)
 
 
-@pytest.mark.filterwarnings("ignore::beam.SuspiciousValue")
 def test_events_say_what_simulated_motions_do(curve: Branch) -> None:
     """Multipliers from small simulated deviations, without the tangents: 1, -1 or a pair on the circle."""
     expected, checked = {"fold": 0.0, "period doubling": np.pi}, 0
@@ -129,7 +127,6 @@ def test_events_say_what_simulated_motions_do(curve: Branch) -> None:
     assert kinds - {"undecided"} == {"fold", "period doubling", "torus", "grazing"}
 
 
-@pytest.mark.filterwarnings("ignore::beam.SuspiciousValue")
 def test_real_pairs_of_product_one_are_no_torus(curve: Branch) -> None:
     signs = [torus(orbit) for orbit in curve.orbits]
     passed = sum(a * b < 0.0 for a, b in pairwise(signs))
@@ -138,7 +135,6 @@ def test_real_pairs_of_product_one_are_no_torus(curve: Branch) -> None:
     assert all(is_torus(event.orbit) for event in tori)
 
 
-@pytest.mark.filterwarnings("ignore::beam.SuspiciousValue")
 def test_numbers_of_an_oscillator_along_a_path() -> None:
     """Constant force is Z = f/w^2: dZ/dW = -2 Z/W, at the ends of the range too."""
     for w in (0.3, 0.61, 0.9):
@@ -168,7 +164,6 @@ def test_no_orbit_next_to_the_start() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.filterwarnings("ignore::beam.SuspiciousValue")
 @pytest.mark.parametrize("kind", ["fold", "period doubling"])
 def test_any_event_is_a_start(kind: str) -> None:
     """At a fold p does not tell an orbit from its neighbours."""
@@ -181,7 +176,6 @@ def test_any_event_is_a_start(kind: str) -> None:
     assert sorted(met) == pytest.approx(sorted(others), abs=1e-8)
 
 
-@pytest.mark.filterwarnings("ignore::beam.SuspiciousValue")
 def test_an_end_of_the_range_is_a_start(curve: Branch) -> None:
     low = curve.parameters[0]
     at_end = follow_path(PATH, curve.orbits[0], low, low=low, high=low + 0.01, step=0.3)

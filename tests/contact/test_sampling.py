@@ -7,7 +7,7 @@ from multiprocessing import get_context
 import numpy as np
 import pytest
 from oscillators import equation_1, modes_on_stop, newton, spring
-from whole_motions import DASHPOT, HERTZ, LOSSY, SOFTER, falling_body, pressed
+from whole_motions import DASHPOT, HERTZ, LOSSY, SOFTER, TABLE, WAIT, falling_body, pressed
 
 from contact.engine import event_loop
 from contact.errors import ContactError, UnresolvedCrossing
@@ -17,7 +17,6 @@ from contact.simulation import simulate
 from contact.touch.delayed import DelayedRestitution
 from contact.trajectory import ImpactKind, Regime, State
 
-TABLE = DelayedRestitution(restitution=lambda v: 0.3 / (1 + v), delay=lambda v: 4e-4 + 1e-4 * v)
 SYSTEMS = {
     "one mode, Newton": lambda: equation_1(22.2, excess=0.05),
     "six modes, Newton": lambda: spring(6, newton(0.5), drive=(21.5, 1.5e-3)),
@@ -28,7 +27,7 @@ SYSTEMS = {
     "one mode, soft": lambda: spring(1, SOFTER, drive=(21.5, 2.2e-3)),
     "four modes, lossy": lambda: spring(4, LOSSY, drive=(21.5, 2.2e-3)),
     "four modes, dashpot": lambda: spring(4, DASHPOT, drive=(21.5, 2.2e-3)),
-    "delayed": lambda: spring(1, DelayedRestitution(restitution=0.3, delay=4e-4), drive=(21.5, 2.2e-3)),
+    "delayed": lambda: spring(1, WAIT, drive=(21.5, 2.2e-3)),
     "delayed by table": lambda: spring(1, TABLE, drive=(21.5, 2.2e-3)),
 }
 

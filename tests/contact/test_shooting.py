@@ -54,9 +54,8 @@ def test_where_contact_is_soft_a_branch_has_several_folds() -> None:
     # however long the steps of the branch
     for step in (0.21, 0.47):
         branch = follow(family, far, low=1e-3 * oscillator.unit_speed, high=2 * far.speed, step=step)
-        assert [orbit.excess for orbit in branch.of_kind("fold")] == pytest.approx(
-            [upper.excess, lower.excess], abs=1e-14
-        )
+        folds = [orbit.excess for orbit in branch.of_kind("fold")]
+        assert folds == pytest.approx([upper.excess, lower.excess], abs=1e-14)
     lowest = min(whole.events, key=lambda event: event.orbit.excess)
     assert lowest.kind == "grazing" and lowest.orbit.excess == pytest.approx(1.309e-6, rel=1e-2)
     assert [touches(family.at_speed(lowest.orbit.speed * x, lowest.orbit)) for x in (1.001, 0.999)] == [1, 2]
@@ -79,9 +78,8 @@ def test_below_its_lowest_fold_a_branch_can_go_on_to_a_graze() -> None:
     strobed = StroboscopicMap(oscillator=oscillator)
     for part, impacts in ((1.2, 1), (1.01, 1), (0.99, 2)):
         excess = part * lowest.orbit.excess
-        run = settle(
-            strobed.at(excess), start.strobe_state(), most_cycles=4000, tolerance=1e-3 * excess, prove=False
-        )
+        limits = dict(most_cycles=4000, tolerance=1e-3 * excess)
+        run = settle(strobed.at(excess), start.strobe_state(), prove=False, **limits)
         assert (run.period, run.impacts) == (8, impacts)
 
 

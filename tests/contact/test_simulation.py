@@ -69,11 +69,7 @@ def test_free_mass_on_spring_and_dashpot_rebounds_without_pull(ratio):
     assert len(run.impacts) == 1
     assert run.impacts.start[0] == pytest.approx(0.01 / speed, rel=1e-13)
     assert run.impacts.rebound[0] == pytest.approx(-rebound, rel=1e-10)
-    assert run.impacts.end[0] == pytest.approx(
-        0.01 / speed + t + (depth / rebound if ratio else 0.0), rel=1e-10
-    )
+    flown = depth / rebound if ratio else 0.0
+    assert run.impacts.end[0] == pytest.approx(0.01 / speed + t + flown, rel=1e-10)
     assert run.impacts.loss[0] == pytest.approx(0.5 * (speed**2 - rebound**2), rel=1e-9, abs=1e-14)
     assert run.end.velocity[0] == pytest.approx(-rebound, rel=1e-10)
-
-
-# --------------------------------------------------------------------------------------------- energy balance

@@ -63,9 +63,8 @@ def test_ratio_to_the_map_at_a_band_edge() -> None:
         errors = []
         for below in (1e-3, 1e-4):
             frequency = upper * (1 - below)
-            chart = NordmarkMap.from_frequencies(
-                drive_frequency=frequency, free_period=T, decay_rate=MU, restitution=tau
-            )
+            numbers = dict(free_period=T, decay_rate=MU, restitution=tau)
+            chart = NordmarkMap.from_frequencies(drive_frequency=frequency, **numbers)
             exact = equation_1(frequency, period, restitution=tau).fold().excess
             errors.append(abs(chart.excess(MapFamily(chart, period).fold().rho) / exact - limit))
         assert errors[1] < 0.15 * errors[0] and errors[1] < 2e-3

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from one_mode import DAMPINGS, FREQUENCIES, GAP, Period, at_a_strobe, compared, oscillator
-from oscillators import GAMMA, OMEGA, PHI, modes_on_stop, slow
+from oscillators import newton, slow, spring
 from tip_judge import Signal, highest
 
 from contact import StroboscopicMap
@@ -26,10 +26,8 @@ def test_every_period_is_that_of_the_general_loop(frequency, tau):
 @pytest.mark.parametrize("n_modes", [1, 6])
 def test_a_deviation_that_has_faded_is_zero_and_no_denormal_number(n_modes):
     """Rounding would keep it at the smallest number above zero, and arithmetic slow, for ever."""
-    driven = modes_on_stop(
-        OMEGA[:n_modes], 0.05 * OMEGA[:n_modes], PHI[:n_modes], GAMMA[:n_modes], drive=21.5
-    )
-    system, runs = strobed_system(driven.with_excess(-0.05)), at_a_strobe()
+    driven = spring(n_modes, newton(0.5), damping=0.05, drive=(21.5, 0.0)).with_excess(-0.05)
+    system, runs = strobed_system(driven), at_a_strobe()
     u, points, counts = np.full((2, n_modes), 1e-9), np.empty((20_000, 2 * n_modes)), np.empty(20_000, int)
     status = strobed_motion(system.table, system, np.empty(0), u[0], u[1], runs, points, counts)
     assert status == DONE and not counts.any() and not u.any()
@@ -101,13 +99,10 @@ def test_planted_overshoots_are_found_and_none_is_invented(damping, size):
     excess=st.one_of(st.floats(-0.5, 0.5), st.sampled_from([1e-12, 1e-9, -1e-12])),
     u=st.floats(-1.5, 1.5),
     v=st.floats(-1.5, 1.5),
-    flipped=st.booleans(),
+    sign=st.sampled_from([1.0, -1.0]),
 )
-def test_what_is_called_free_is_free(frequency, damping, excess, u, v, flipped):
-    single = oscillator(
-        frequency, decay=DAMPINGS[damping], excess=excess, participation=-1.0 if flipped else 1.0
-    )
-    period = Period(single)
+def test_what_is_called_free_is_free(frequency, damping, excess, u, v, sign):
+    period = Period(oscillator(frequency, decay=DAMPINGS[damping], excess=excess, participation=sign))
     motion = period.motion
     un, vn = np.array([u * GAP]), np.array([v * GAP * motion.omega[0]])
     height = tip_state(motion, 0.0, un, vn)[0]

@@ -16,8 +16,7 @@ from contact.flight.modal_flow import tip_rounding
 from contact.flight.motion import LOAD, Motion
 
 Real = np.longdouble
-DECADES = [10.0**-k for k in range(1, 13)]
-PLANTED = [sign * h for h in DECADES for sign in (1.0, -1.0)]
+PLANTED = [sign * 10.0**-k for k in range(1, 13) for sign in (1.0, -1.0)]
 
 
 class Signal:

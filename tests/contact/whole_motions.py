@@ -9,6 +9,7 @@ import numpy as np
 from oscillators import OMEGA, PHI, modes_on_stop, newton, spring
 from scipy.integrate import solve_ivp
 
+import contact
 from contact import ContactLaw, HertzContact, HuntCrossley, ImpactOscillator, LinearContact, State, Trajectory
 
 FREE, CONTACT, INSIDE, HELD, WAITING = 0, 1, 2, 3, 4
@@ -17,6 +18,8 @@ IMPACT, GRAZE, STAY = 0, 1, 2
 HERTZ, SOFTER = HertzContact(stiffness=3e7), HertzContact(stiffness=1e6)
 LOSSY = HuntCrossley(stiffness=3e7, dissipation=1.2)
 SPRING, DASHPOT = LinearContact(stiffness=3e5), LinearContact(stiffness=3e5, damping=15.0)
+WAIT = contact.DelayedRestitution(restitution=0.3, delay=4e-4)
+TABLE = contact.DelayedRestitution(restitution=lambda v: 0.3 / (1 + v), delay=lambda v: 4e-4 + 1e-4 * v)
 
 
 def name_of(value: object) -> str:
