@@ -11,8 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from beam.parameters import final, require_array, require_within
-
-EPS = 2.220446049250313e-16
+from contact.flight.elementary import EPS
 
 
 @final

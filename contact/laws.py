@@ -31,7 +31,6 @@ HERTZ_TIME = 0.8 * math.sqrt(math.pi) * 2.0757065006382507
 """Contact time of a free mass under Hertz's law over (greatest approach / approach velocity): 0.8 sqrt(pi)
 Gamma(0.4)/Gamma(0.9) = 2.9432 [1]."""
 
-
 SOFTEST, HARDEST = 1e8, 1.5e12
 """Young's moduli of the bodies in contact beyond which a warning is given [Pa]: soft polymers and diamond; in
 GPa or MPa a modulus is far below."""

@@ -95,10 +95,9 @@ class ImpactOscillator:
         if self.drive is None:
             return
         require(self.stop.gap > 0, "gap", f"is {self.stop.gap} m; for a driven spring it must be above zero")
-        told = f"is {self.drive.frequency:g} Hz"
         resonant = (omega == self.drive.angular_frequency) & (decay == 0)
-        words = "that of an undamped mode; there is no steady motion, so it must differ"
-        require(not np.any(resonant), "frequency of the drive", f"{told}, {words}")
+        words = f"{self.drive.frequency:g} Hz, that of an undamped mode without steady motion; it must differ"
+        require(not np.any(resonant), "frequency of the drive", f"is {words}")
         self._suspect(self.drive)
 
     def _suspect(self, drive: HarmonicDrive) -> None:
@@ -198,9 +197,7 @@ class ImpactOscillator:
         there is no steady motion."""
         _ = self.driven
         if self.load is not None:
-            words = (
-                "for a steady motion it must be zero on every mode of zero frequency, which drifts under it"
-            )
+            words = "for a steady motion it must be zero on a mode of zero frequency, which drifts"
             drifts = np.any(self.load[self.model.omega == 0.0])
             require(not drifts, f"load is {shown(self.load.tolist())} N kg^-0.5; {words}")
         return self._at_one_metre.level

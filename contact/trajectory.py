@@ -1,8 +1,7 @@
 """States and motions as named arrays.
 
 A modal state is a displacement q_k [m kg^0.5] and a velocity q_k' [m kg^0.5 / s] of each mode.
-``ImpactOscillator.tip`` gives the displacement of the tip relative to the base.  Impacts keep the deviations
-u = q - q_s and v = q' - q_s' from the steady motion q_s, and give the states on demand.
+``ImpactOscillator.tip`` gives the displacement of the tip relative to the base.
 """
 
 from __future__ import annotations
@@ -125,9 +124,9 @@ class Run:
 class Impacts:
     """The touches of the tip, in the order in which they began.
 
-    Times are kept as drive periods and the rest, and states as deviations from the steady motion of the
-    `oscillator`.  Both are right to rounding however long the run.  Times in seconds and modal states are
-    made of them on demand.
+    Times are kept as drive periods and the rest, and states as deviations u = q - q_s and v = q' - q_s' from
+    the steady motion q_s of the `oscillator`.  Both are right to rounding however long the run.  Times in
+    seconds and modal states are made of them on demand.
 
     Parameters
     ----------

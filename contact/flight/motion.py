@@ -112,9 +112,11 @@ def motion_of(
     inverse = np.divide(1.0, omega, out=np.zeros(n), where=stiff)
     time = np.divide(1.0, top, out=np.full(n, float(period)), where=top > 0)
     high, low = np.array([damped_frequency(x, c) for x, c in zip(omega, decay, strict=True)]).reshape(n, 2).T
-    modes, sc = np.zeros((12, (n + LANES - 1) // LANES * LANES)), (response.real, response.imag)
-    modes[DAMPED], drift = 1.0, np.where(stiff, 0.0, load)
-    modes[:, :n] = decay, omega**2, phi, drift, high, low, omega, inverse, time, *sc, offset  # in their order
+    drift = np.where(stiff, 0.0, load)
+    modes = np.zeros((12, (n + LANES - 1) // LANES * LANES))
+    modes[DAMPED] = 1.0
+    modes[:SINE, :n] = decay, omega**2, phi, drift, high, low, omega, inverse, time
+    modes[SINE:, :n] = response.real, response.imag, offset
     all_underdamped = bool(np.all((high > 0) & (omega > 0.5 * decay) & (drift == 0)))
     tip = complex(phi @ response)
     return Motion(

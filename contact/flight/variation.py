@@ -60,15 +60,10 @@ class Variation(NamedTuple):
     scalars: np.ndarray  # of single numbers, shape (parameters, 6); the columns are named above
 
 
-def variation(motion, response, square=None, decay=None, weight=None, scalars=None):
-    """The variation of an oscillator; the derivatives are left out where there are no parameters."""
-    none, numbers = np.zeros((0, motion.size)), np.zeros((0, NUMBER1 + 1))
-    return Variation(
-        motion,
-        response,
-        *(none if each is None else each for each in (square, decay, weight)),
-        numbers if scalars is None else scalars,
-    )
+def variation(motion, response, *derivatives):
+    """The variation with these `derivatives`, its last four fields; without parameters none are given."""
+    none = np.zeros((0, motion.size))
+    return Variation(motion, response, *(derivatives or (none, none, none, np.zeros((0, NUMBER1 + 1)))))
 
 
 @part

@@ -13,8 +13,7 @@ from numba.extending import intrinsic
 LANES = 8  # numbers side by side in the widest vector registers in use
 _GROUP = 4  # blocks of eight columns that share a pass over the terms
 
-_REAL = ir.DoubleType()
-_EIGHT = ir.VectorType(_REAL, LANES)
+_EIGHT = ir.VectorType(ir.DoubleType(), LANES)
 
 
 class _Rows:

@@ -51,9 +51,8 @@ def band(
     def frequency(angle: float) -> float:
         return 1.0 / (free_period * (whole_turns + angle / (2.0 * math.pi)))
 
-    middle = frequency(math.pi / (m - 0.5))  # wrong parameters are refused here
-    NordmarkMap.from_frequencies(
-        drive_frequency=middle,
+    NordmarkMap.from_frequencies(  # wrong parameters are refused here
+        drive_frequency=frequency(math.pi / (m - 0.5)),
         free_period=free_period,
         decay_rate=decay_rate,
         restitution=restitution,

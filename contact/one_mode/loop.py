@@ -24,7 +24,8 @@ of the period (below resonance it does, unless the mode's sign puts it at the st
 * A zero of y lies within a quarter of a period of t_p.  If y' > 0 there, (1) with t_1 at the zero shows y < 0
   all the time before it: it is the first crossing, whichever way it was found.  It is one beyond rounding if
   the peak that its slope must reach, y'^2/(2 max|y''|), exceeds m.  ``one_impact`` finds nearly all crossings
-  in one evaluation and checks them; an iteration finds the others.
+  in one evaluation and checks them; an iteration (`rising_zero`) finds the others, in a period that takes
+  1.3 to 1.8 times as long.
 * After an impact (1) with z_1 = G - d > 0 and z_1' <= 0 shows y < 0 for the rest of the period, with the rho
   and d from then on; and y'' <= -w^2 z_1 < 0, so that impacts do not accumulate.
 
@@ -39,9 +40,11 @@ from contact.engine.recorder import strobes_only
 from contact.flight.modal_flow import FAINT
 from contact.flight.motion import COSINE, SINE, with_drive
 from contact.machine.compiled import borrowed, inlined, kernel
-from contact.one_mode.one_impact import crossing_guess, is_proved, one_impact, peak_derivatives, rising_zero
-from contact.one_mode.period_table import flow_over, table_at, through, tip_near
+from contact.one_mode.one_impact import crossing_guess, is_proved, one_impact, peak_derivatives
+from contact.one_mode.period_table import SMALL, flow_over, table_at, taylor_flow, through, tip_near
 from contact.trajectory import OUTSIDE
+
+NEWTON_STEPS = 60  # bound of Newton steps; next to a graze each halves the distance to the double root
 
 
 @inlined
@@ -49,6 +52,34 @@ def is_free(n, s, z, rate, height):
     """(*): whether a height z and its rate [m, m/s] prove the period free; `height` = G - d [m]."""
     slack = height - s.margin
     return z * z + n.drive_time_squared * rate * rate < slack * slack
+
+
+@kernel
+def rising_zero(table, u, v, t):
+    """Newton's iteration from the time `t` for a zero of the tip displacement where it rises.
+
+    Returns its time [s], deviation and rate, and the approach velocity [m/s], NaN without a positive slope.
+    """
+    low, high = 0.0, table.mode.period
+    for _ in range(NEWTON_STEPS):
+        if not low < t < high:
+            t = 0.5 * (low + high)
+        un, vn, y0, y1, y2 = tip_near(table, u, v, t)
+        if not y1 > 0.0:
+            break
+        x = -y0 / y1
+        if abs(y2) * x * x < SMALL * table.steady.margin and low < t + x < high:
+            # the error after this step is below rounding
+            un, vn = taylor_flow(table.mode, un, vn, x)
+            return t + x, un, vn, y1 + x * y2
+        if y0 < 0.0:
+            low = t
+        else:
+            high = t
+        # Halley's step where it is close to Newton's
+        change = 0.5 * x * y2
+        t += x if abs(change) > 0.25 * y1 else -y0 / (y1 + change)
+    return t, u, v, math.nan
 
 
 @inlined
@@ -101,12 +132,8 @@ def one_mode_periods(table, system, factors, u, v, runs, points, counts):
         if factors.size > 0 and factors[i] != factor:
             change, factor = factors[i] - factor, factors[i]
             local = table_at(table, system.motion, factor)
-            un, vn, mean_u, mean_v = (
-                un - change * driven_u,
-                vn - change * driven_v,
-                mean_u + change * driven_u,
-                mean_v + change * driven_v,
-            )
+            un, vn = un - change * driven_u, vn - change * driven_v
+            mean_u, mean_v = mean_u + change * driven_u, mean_v + change * driven_v
         impacts = 0
         s = local.steady
         rho = math.sqrt(un * un + n.mode_time_squared * vn * vn)

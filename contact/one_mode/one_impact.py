@@ -24,24 +24,12 @@ Y = A w^4 + omega (omega + c)^3 rho by repeated use of u'' = -c u' - omega^2 u.
 
 The series of F_(t - t_k) give F_(t_k - t) as well.  F_(-d) is its Taylor polynomial of third order, with an
 error as small as that of the cubic.
-
-An iteration (`rising_zero`) finds the other crossings; it makes a period 1.3 to 1.8 times as long.
 """
 
 import math
 
-from contact.machine.compiled import inlined, kernel
-from contact.one_mode.period_table import (
-    SMALL,
-    flow_to,
-    free_derivatives,
-    short_flow,
-    through,
-    tip_derivatives,
-    tip_near,
-)
-
-NEWTON_STEPS = 60  # bound of Newton steps; next to a graze each halves the distance to the double root
+from contact.machine.compiled import inlined
+from contact.one_mode.period_table import SMALL, flow_to, short_flow, taylor_flow, through, tip_derivatives
 
 
 @inlined
@@ -66,13 +54,6 @@ def crossing_guess(n, s, p, q):
     change = x * x * x * (jerk / 6.0 + x * snap / 24.0) * inverse
     x -= change * (1.0 + 0.5 * change * inverse * (x * (jerk + 0.5 * x * snap) - deceleration))
     return n.peak + x
-
-
-@inlined
-def taylor_flow(n, u, v, x):
-    """The deviation (u, v) a tiny time `x` later, by its Taylor polynomial of third order."""
-    u2, u3, u4 = free_derivatives(n, u, v)
-    return u + x * (v + x * (0.5 * u2 + x * u3 / 6.0)), v + x * (u2 + x * (0.5 * u3 + x * u4 / 6.0))
 
 
 @inlined
@@ -120,31 +101,3 @@ def one_impact(table, t, rho, u, v):
     u, v = through(n.period_flow, u, v)
     back_u, back_v = flow_to(rows, rows.shape[0] - 1 - k, back_u, back_v)
     return proved, u + jump * back_u, v + jump * back_v
-
-
-@kernel
-def rising_zero(table, u, v, t):
-    """Newton's iteration from the time `t` for a zero of the tip displacement where it rises.
-
-    Returns its time [s], deviation and rate, and the approach velocity [m/s], NaN without a positive slope.
-    """
-    low, high = 0.0, table.mode.period
-    for _ in range(NEWTON_STEPS):
-        if not low < t < high:
-            t = 0.5 * (low + high)
-        un, vn, y0, y1, y2 = tip_near(table, u, v, t)
-        if not y1 > 0.0:
-            break
-        x = -y0 / y1
-        if abs(y2) * x * x < SMALL * table.steady.margin and low < t + x < high:
-            # the error after this step is below rounding
-            un, vn = taylor_flow(table.mode, un, vn, x)
-            return t + x, un, vn, y1 + x * y2
-        if y0 < 0.0:
-            low = t
-        else:
-            high = t
-        # Halley's step where it is close to Newton's
-        change = 0.5 * x * y2
-        t += x if abs(change) > 0.25 * y1 else -y0 / (y1 + change)
-    return t, u, v, math.nan

@@ -159,9 +159,8 @@ def period_table(motion: Motion) -> PeriodTable | None:
     Returns None for another law or several modes, without stiffness or drive, for a mode with its node at the
     tip, and for one so fast that too many nodes would be needed.
     """
-    if motion.law != NEWTON or motion.size != 1 or motion.inverse_mass == 0.0:
-        return None
-    if not (motion.omega[0] > 0 and motion.drive > 0):
+    suits = motion.law == NEWTON and motion.size == 1 and motion.inverse_mass != 0.0
+    if not (suits and motion.omega[0] > 0 and motion.drive > 0):
         return None
     ratio = max(motion.drive, float(motion.omega[0]), float(motion.decay[0])) / motion.drive
     if not ratio * FEWEST <= MOST:
@@ -230,6 +229,13 @@ def free_derivatives(mode, u, v):
     u2 = -(mode.decay * v + mode.stiffness * u)
     u3 = -(mode.decay * u2 + mode.stiffness * v)
     return u2, u3, -(mode.decay * u3 + mode.stiffness * u2)
+
+
+@inlined
+def taylor_flow(mode, u, v, x):
+    """The deviation (u, v) a tiny time `x` later, by its Taylor polynomial of third order."""
+    u2, u3, u4 = free_derivatives(mode, u, v)
+    return u + x * (v + x * (0.5 * u2 + x * u3 / 6.0)), v + x * (u2 + x * (0.5 * u3 + x * u4 / 6.0))
 
 
 @inlined
