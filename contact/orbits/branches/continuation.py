@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from beam.parameters import InvalidValue, require_array, require_kind, require_within
-from contact.errors import ContactError
+from contact.errors import ContactError, NotPeriodic
 from contact.orbits.branches.branch import SMALLEST, Branch, branch_of
 from contact.orbits.branches.events import Event
 from contact.orbits.branches.family_curve import (
@@ -168,7 +168,10 @@ def _fold_of_these_touches(
 
 def fold_of_the_kicks(family: ContinuableFamily) -> SingleImpactOrbit | None:
     """The fold of the kick description at any speed of the search, the usual ones first."""
-    return family.kicks.fold() or family.kicks.fold((SPEEDS[1] / 2.0, GREATEST_SPEED))
+    found = family.kicks.fold()
+    with suppress(NotPeriodic):  # a collision so fast that it does not end in time is no kick
+        found = found or family.kicks.fold((SPEEDS[1] / 2.0, GREATEST_SPEED))
+    return found
 
 
 def fold_along_frequency(
