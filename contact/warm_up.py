@@ -34,12 +34,7 @@ def _orbits() -> None:
     Shooting(oscillator=_oscillator(HertzContact(stiffness=1e9)), period=5).at_speed(0.1)
 
 
-def compile_kernels() -> None:
-    """Run every compiled kernel once on a small problem."""
+if __name__ == "__main__":
     with ProcessPoolExecutor(max_workers=2, mp_context=get_context("spawn")) as pool:
         for task in [pool.submit(_motions), pool.submit(_orbits)]:
             task.result()
-
-
-if __name__ == "__main__":
-    compile_kernels()

@@ -118,10 +118,8 @@ def told_by(name: str, found: dict) -> Iterator[str]:
         for f in dict.fromkeys(row["frequency_hz"] for row in rows):
             at = [row for row in rows if row["frequency_hz"] == f]
             yield cells(f"{f:.2f}", f"p{at[-1]['period']}", *(end_in_words(row["excess_down"]) for row in at))
-        off = {
-            a["frequency_hz"]: a["excess_down"] / b["excess_down"]
-            for a, b in zip(rows[2::4], rows[3::4], strict=True)
-        }
+        pairs = zip(rows[2::4], rows[3::4], strict=True)
+        off = {a["frequency_hz"]: a["excess_down"] / b["excess_down"] for a, b in pairs}
         assert all(abs(off[f] - 1.0) < 0.1 for f in (21.5, 23.05, 23.4))
         factors = [max(off[f], 1.0 / off[f]) for f in (20.9, 22.2, 22.6)]
         yield "factors of {:.1f}, {:.1f} and {:.0f}".format(*factors)

@@ -16,10 +16,9 @@ SIMD = "import numpy; print(*numpy.show_config('dicts')['SIMD Extensions'].get('
 
 
 def answer(*arguments: str, **choice: str) -> subprocess.CompletedProcess[str]:
-    surroundings = {name: value for name, value in os.environ.items() if name not in CHOICE}
-    return subprocess.run(
-        [sys.executable, *arguments], env=surroundings | choice, capture_output=True, text=True, cwd=ROOT
-    )
+    env = {name: value for name, value in os.environ.items() if name not in CHOICE} | choice
+    command = [sys.executable, *arguments]
+    return subprocess.run(command, env=env, capture_output=True, text=True, cwd=ROOT)
 
 
 def collected(**choice: str) -> subprocess.CompletedProcess[str]:

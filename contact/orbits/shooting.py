@@ -5,9 +5,14 @@ folds, and all its orbits at one amplitude, are found by following the branch
 (``contact.orbits.branches.continuation``).
 """
 
+import math
 from dataclasses import dataclass
+from itertools import pairwise
 
-from contact.orbits.branches.continuation import lowest_fold, orbits_at
+from beam.parameters import require_within
+from contact.orbits.branches.continuation import lowest_fold
+from contact.orbits.branches.events import Arc
+from contact.orbits.branches.family_curve import branch_ended, whole_branch
 from contact.orbits.families.continuable_family import ContinuableFamily
 from contact.orbits.families.family import PeriodicOrbit
 
@@ -25,7 +30,21 @@ class Shooting(ContinuableFamily):
         The branch is searched from 1e-6 to 100 times 2 pi f gap.  BranchEnded is raised if it is lost, or if
         another orbit lies beyond these speeds.
         """
-        return orbits_at(self, excess)
+        require_within("excess", excess, "[1]", above=-1)
+        curve, points, branch = whole_branch(self, None)
+        found = []
+        for last in (branch.orbits[0], branch.orbits[-1]):
+            fast, slow = (math.isclose(last.speed, bound) for bound in (curve.fastest, curve.slowest))
+            to_graze = slow and self.impacts == 1 and 0.0 < excess / last.excess < 1.0
+            if to_graze or (fast and last.excess < excess):
+                raise branch_ended(last, f"an orbit at excess {excess:g} is beyond the speeds of the search")
+        for start, end in pairwise(points):
+            a, b = (point.oriented(end.x - start.x) for point in (start, end))
+            turns = [Arc(curve, a, b).root(lambda point: point.rate)] if a.rate * b.rate < 0.0 else []
+            for c, d in pairwise([a, *turns, b]):  # both sides of a fold may have an orbit
+                if (c.orbit.excess - excess) * (d.orbit.excess - excess) < 0.0:
+                    found.append(Arc(curve, c, d).root(lambda point: point.orbit.excess - excess).orbit)
+        return tuple(sorted(found, key=lambda orbit: orbit.speed))
 
     def fold(self) -> PeriodicOrbit | None:
         """The orbit of least amplitude at which two orbits meet; None if the branch has none."""

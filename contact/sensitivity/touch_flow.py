@@ -13,15 +13,13 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from beam.parameters import Array
 from contact import touch
 from contact.errors import ContactError, ContactTooStiff, NotPeriodic
 from contact.flight.crossing import CROSSES, first_crossing
 from contact.flight.modal_flow import propagate
-from contact.flight.variation import Variation, force_jump, tangent_flight, variation
+from contact.flight.variation import force_jump, tangent_flight
 from contact.machine.compiled import borrowed, held, kernel, part
-from contact.oscillator import ImpactOscillator
-from contact.touch.passage import AT_END, RELEASED, STATE, Touches, begin, follower, new_touches
+from contact.touch.passage import AT_END, RELEASED, STATE, begin, follower
 from contact.touch.series import new_series
 from contact.touch.tangent_series import new_tangent_workspace, tangent_step
 from contact.trajectory import CONTACT, OUTSIDE, SUSTAINED
@@ -145,29 +143,3 @@ def flow_error(outcome: int, time: float, velocity: float, detail: str) -> Conta
         detail = f"more than {MOST_STEPS} steps in one touch, or a step of no length"
         return ContactTooStiff(time=time, gap=0.0, velocity=velocity, detail=detail)
     return NotPeriodic(time=time, gap=0.0, velocity=velocity, detail=detail)
-
-
-def flow_over_periods(
-    oscillator: ImpactOscillator,
-    period: int,
-    phase: float,
-    deviations: Array,
-    touches: int,
-    vary: Variation | None = None,
-) -> tuple[Array, Array, Touches]:
-    """The flow over m = `period` drive periods from a touch at drive time `phase` [s].
-
-    It starts from the `deviations` (u, v), shape (2 n_modes,).  Returned are (u, v) at the end, the tangents
-    with respect to (u, v, S, C) and the parameters of `vary`, and the touches, at times since the first one.
-
-    NotPeriodic is raised if the motion has fewer touches or a contact does not end, and ContactTooStiff if a
-    contact needs more than `MOST_STEPS`.
-    """
-    (u, v), size, duration = deviations.reshape(2, -1).copy(), deviations.size, period * oscillator.period
-    vary = variation(oscillator.motion(), oscillator.tip_response()) if vary is None else vary
-    tangent, record = np.eye(size + 2, size + 2 + len(vary.scalars)), new_touches(touches, u.size)
-    outcome = flow_from_touch(vary, phase, u, v, duration, tangent, record)
-    if outcome != FLOWN:
-        words = f"an orbit of period {period} with {touches} touches was lost"
-        raise flow_error(outcome, phase, float(record.log[0]["approach"]), words)
-    return np.concatenate([u, v]), tangent, record

@@ -106,14 +106,6 @@ class Case:
     def orbit(self) -> PeriodicOrbit:
         return self.family.at_speed(self.speed)
 
-    @cached_property
-    def unknown(self) -> np.ndarray:
-        """Deviations and drive at the touch of the kicked orbit."""
-        orbit = self.kicked
-        angle = orbit.oscillator.drive.angular_frequency * orbit.phase
-        drive = orbit.amplitude * np.array([np.sin(angle), np.cos(angle)])
-        return np.concatenate([orbit.displacement, orbit.velocity, drive])
-
 
 def cases_of(oscillator: contact.ImpactOscillator) -> dict[str, tuple[Case, ...]]:
     """Cases by what a call follows: a motion, one from each start, a family, its orbits at each speed."""

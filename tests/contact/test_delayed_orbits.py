@@ -94,8 +94,6 @@ def test_a_wait_of_all_periods_is_refused() -> None:
     kicks = KickFamily(oscillator=equation_1(20.90, law), period=3)
     with pytest.raises(contact.NotPeriodic, match="period 3"):
         kicks.orbit(0.1)
-    with pytest.raises(contact.NotPeriodic, match="half a drive period"):
-        kicks.kick(0.1, np.zeros((1, 2)))
     assert KickFamily(oscillator=equation_1(20.90, law), period=4).orbit(0.1).kick.duration == law.delay
 
 

@@ -138,8 +138,6 @@ def test_where_several_descriptions_hold_they_are_one(name: str) -> None:
             assert np.max(np.abs(place[0] - place[1]) / scale) < digits
             assert apart(found.multipliers, wanted.multipliers) < 1e-12 / part**2
             assert found.admissible == wanted.admissible
-    kicks = KickFamily(oscillator=oscillator, period=period)
-    assert abs(kicks.error(kicks.orbit(0.3 * oscillator.unit_speed))) < 1e-13
     folds = [one.fold() for one in (closed, *others)]
     for fold in folds if folds[0] else ():
         assert fold.excess == pytest.approx(folds[0].excess, abs=1e-13)

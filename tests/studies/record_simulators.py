@@ -167,10 +167,8 @@ def follow(beam, state, touching, end, numerical=False):
 
 def tip(beam, flights, times):
     """Displacement and velocity of the tip at times within these flights; shape (2, times)."""
-    found, owner = (
-        np.empty((2, len(times))),
-        np.searchsorted([s for s, _ in flights], times, side="right") - 1,
-    )
+    found = np.empty((2, len(times)))
+    owner = np.searchsorted([start for start, _ in flights], times, side="right") - 1
     for i in np.unique(owner):
         found[:, owner == i] = np.kron(np.eye(2), beam.phi) @ flights[i][1](times[owner == i])
     return found

@@ -8,6 +8,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from oscillators import slow
 
 from studies.methods.adequacy.__main__ import questions, sentences
 from studies.methods.adequacy.models import Choice, Models
@@ -28,7 +29,6 @@ SCENES = {
     "soft contact": (LETTER.replace(SOFT), 22.2),
     "fast drive": (LETTER.replace({"drive.frequencies_hz": (140.0,)}), 140.0),
 }
-LATER = ("restitution", "delay")
 
 
 @cache
@@ -66,12 +66,8 @@ def check(name: str, quantity: str, frequency: float) -> Choice:
     return least
 
 
-@pytest.mark.parametrize(
-    "name", ["letter", *(pytest.param(name, marks=pytest.mark.slow) for name in list(SCENES)[1:])]
-)
-@pytest.mark.parametrize(
-    "quantity", ["frequency 3", "kick", *(pytest.param(name, marks=pytest.mark.slow) for name in LATER)]
-)
+@pytest.mark.parametrize("name", ["letter", *slow(*list(SCENES)[1:])])
+@pytest.mark.parametrize("quantity", ["frequency 3", "kick", *slow("restitution", "delay")])
 def test_enough_and_not_more(name, quantity):
     check(name, quantity, SCENES[name][1])
 
@@ -103,11 +99,7 @@ def test_born_period_needs_a_residual_mode_where_the_letter_disagrees():
 
 
 @pytest.mark.parametrize(
-    ("quantity", "tolerance"),
-    [
-        ("kick", 5e-3),
-        *(pytest.param(*each, marks=pytest.mark.slow) for each in (("fold", 0.07), ("tip_trace", 2e-3))),
-    ],
+    ("quantity", "tolerance"), [("kick", 5e-3), *slow(("fold", 0.07), ("tip_trace", 2e-3))]
 )
 def test_the_quick_estimate_of_the_studies_is_that_of_the_search(quantity, tolerance):
     """The search follows orbits to their folds on a fine mesh, the estimate takes kicks on the usual one."""
@@ -152,7 +144,7 @@ def test_a_model_without_an_answer_is_infinitely_far_off():
     assert not row.reached and row.error == math.inf and row.least == "none"
 
 
-@pytest.mark.parametrize("count", [3, pytest.param(7, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("count", [3, *slow(7)])
 def test_the_study_leaves_a_row_a_question(run_study, monkeypatch, count):
     few = questions(LETTER.replace({"drive.frequencies_hz": (21.5,)}), True)[:count]
     monkeypatch.setattr("studies.methods.adequacy.__main__.questions", lambda scene, quick: few)

@@ -100,10 +100,8 @@ def test_the_gap_is_fitted_at_the_middle_drive_frequency_of_the_scene():
 
 def test_a_jump_is_no_solution():
     with pytest.raises(SceneError, match="jumps across"):
-        said = dict(name="step", unit="m", between=(1e-3, 0.1))
-        calibration.solve_for(
-            "stop.gap_m", LETTER, lambda one: 3.0 - 2.0 * (one.stop.gap_m < 0.01), 2.0, **said
-        )
+        said, key = dict(name="step", unit="m", between=(1e-3, 0.1)), "stop.gap_m"
+        calibration.solve_for(key, LETTER, lambda one: 3.0 - 2.0 * (one.stop.gap_m < 0.01), 2.0, **said)
 
 
 def test_the_model_keeps_the_coupled_modes_only():
@@ -120,12 +118,8 @@ def test_every_kind_of_spring_makes_a_model_with_a_readout():
     for kind in ("flat_u", "folded_u", "cantilever", "straight_strip"):
         model = model_of(LETTER.replace({**COARSE, "spring.kind": kind}))
         assert model.n_modes == 4 and model.points[READOUT].row.shape == (4,)
-    data = {
-        "frequencies_hz": [150.0, 24.5],
-        "decay_rates_per_s": [20.0, 3.5],
-        "tip_values": [5.0, 8.0],
-        "participation": [-0.05, 0.14],
-    }
+    shapes = {"tip_values": [5.0, 8.0], "participation": [-0.05, 0.14]}
+    data = {"frequencies_hz": [150.0, 24.5], "decay_rates_per_s": [20.0, 3.5], **shapes}
     lists = {f"modal_data.{name}": values for name, values in data.items()}
     measured = LETTER.replace({"spring.kind": "modal_data", **lists})
     model = model_of(measured)

@@ -25,10 +25,8 @@ def told(strobed, *, most_cycles=1500, cycles=400):
 
 def test_chaos_slow_transient_and_motion_without_impacts_are_told_apart(letter_scene):
     twelve = letter_scene.replace({"modes.count": 12})
-    single, beam = (
-        StroboscopicMap(oscillator=oscillator)
-        for oscillator in (single_mode_at(letter_scene, FREQUENCY), beam_at(twelve, FREQUENCY))
-    )
+    both = single_mode_at(letter_scene, FREQUENCY), beam_at(twelve, FREQUENCY)
+    single, beam = (StroboscopicMap(oscillator=oscillator) for oscillator in both)
     assert told(single.at(0.034), cycles=500)[0] == CHAOTIC
     for strobed in (single, beam):
         kind, exponent = told(strobed.at(-0.02))

@@ -11,6 +11,7 @@ from typing import get_type_hints
 import numpy as np
 import pytest
 from conftest import study_of
+from oscillators import slow
 
 from studies.__main__ import main
 from studies.experiment.hysteresis.__main__ import Accuracy, Causes, judge
@@ -64,14 +65,10 @@ ON_A_SPRING = ("breakdown", "calibrate", "effective_impact", "last_period", "sha
 SLOW = ("calibrate", "claims", "shape")
 
 
-@pytest.mark.parametrize(
-    "name",
-    [
-        pytest.param(name, marks=pytest.mark.slow if name in SLOW else ())
-        for name in ON_THE_FRAME
-        if name not in LOOKED_AT
-    ],
-)
+OTHERS = [name for name in ON_THE_FRAME if name not in (*LOOKED_AT, *SLOW)]
+
+
+@pytest.mark.parametrize("name", [*OTHERS, *slow(*SLOW)])
 def test_the_small_form_runs_and_leaves_a_table_a_figure_and_a_summary(run_study, monkeypatch, name):
     for what, fewer in FEWER.get(name, {}).items():
         monkeypatch.setattr(f"{module_of(name).removesuffix('.__main__')}.{what}", fewer)

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from oscillators import slow
 
 from studies import explore
 from studies.shell.scene import read_scene
@@ -59,9 +60,7 @@ def test_the_diagram_has_the_hysteresis_of_p4(seen):
     assert branches(lowered, -0.0129, 1.0) == {4} and branches(lowered, -1.0, -0.0135) == {1}
 
 
-@pytest.mark.parametrize(
-    "kind", ["map", *(pytest.param(kind, marks=pytest.mark.slow) for kind in list(explore.KINDS)[1:])]
-)
+@pytest.mark.parametrize("kind", ["map", *slow(*list(explore.KINDS)[1:])])
 def test_every_description_follows_its_sliders(seen, kind):
     seen.kind.set_active(list(explore.KINDS).index(kind))
     assert [move(seen, frequency=f) for f in (20.9, 22.2)] == ["period 3", "period 5"]

@@ -34,9 +34,8 @@ def test_the_causes_multiply_to_the_ratio_of_beam_and_map(fold):
 
 def test_with_one_mode_and_newtons_law_the_whole_chain_is_eq_1(letter_scene):
     """Then there is no delay, no velocity dependence and no higher mode: five descriptions are one."""
-    plain = letter_scene.replace(
-        {"contact.law": "newton", "contact.local_restitution": letter_scene.single_mode.restitution}
-    )
+    tau = letter_scene.single_mode.restitution
+    plain = letter_scene.replace({"contact.law": "newton", "contact.local_restitution": tau})
     row, orbit = folds_at(plain, 22.20, 5, single_mode_of(letter_scene))
     assert isinstance(orbit.oscillator.stop.law, NewtonRestitution)
     for name in CHAIN[1:]:
@@ -74,10 +73,8 @@ def test_the_branch_has_its_least_amplitude_at_the_fold_and_is_stable_above(lett
 
 def test_the_figure_of_another_spring_bears_no_mark_of_the_letter(letter_scene, fold):
     for letters in (True, False):
-        texts = [
-            text.get_text() for text in draw_curves(letter_scene, [fold[0]], letters=letters).findobj(Text)
-        ]
-        assert any("letter" in text for text in texts) == letters
+        texts = draw_curves(letter_scene, [fold[0]], letters=letters).findobj(Text)
+        assert any("letter" in text.get_text() for text in texts) == letters
 
 
 def test_small_form(run_study):

@@ -134,12 +134,13 @@ def test_a_sentence_names_the_unit_or_the_factor(lab):
         assert f"is {words}: the record's is f = {lab.f:.4g}" in drive_found(lab.t, lab.x, factor * lab.f)[1]
     kept = np.random.default_rng(1).random(lab.t.size) < 0.5
     assert peaks(lab.t[kept], lab.x[kept])[0][0] == pytest.approx(lab.f, abs=0.01 / lab.t[-1])
-    assert unit_of(10.1, 0.0100, "gap") == "the record looks like millimetres: divide by 1000"
-    assert unit_of(0.0022, 2.2, "amplitude") == "the given amplitude looks like millimetres: divide by 1000"
-    assert unit_of(40.8, 0.0408, "free_period") == "the record looks like milliseconds: divide by 1000"
-    assert (
-        unit_of(0.0022, 0.021582, "amplitude") == "the given amplitude looks like units of g: divide by 9.81"
-    )
+    for given, words in {
+        (10.1, 0.0100, "gap"): "record looks like millimetres: divide by 1000",
+        (0.0022, 2.2, "amplitude"): "given amplitude looks like millimetres: divide by 1000",
+        (40.8, 0.0408, "free_period"): "record looks like milliseconds: divide by 1000",
+        (0.0022, 0.021582, "amplitude"): "given amplitude looks like units of g: divide by 9.81",
+    }.items():
+        assert unit_of(*given) == f"the {words}"
     assert "2 pi" in str(unit_of(22.2, 139.5, "frequency"))
     assert unit_of(0.010, 0.0119, "gap") is None and unit_of(0.0022, 0.022, "amplitude") is None
 
@@ -159,9 +160,8 @@ def measured(excess, rows=2000, rate=1000.0, *, rest=False, begin=0.0, frequency
         period = settle(at)[0] / F
         flights, clock = follow(at, state, 0, period)[2], times % period
     x = tip(at, flights, clock)[0] + 1e-5 * np.random.default_rng(3).standard_normal(rows)
-    return Record(columns=("time_s", "x_m"), rows=np.column_stack([times, x]), frequency=frequency), float(
-        at.amplitude
-    )
+    record = Record(columns=("time_s", "x_m"), rows=np.column_stack([times, x]), frequency=frequency)
+    return record, float(at.amplitude)
 
 
 @pytest.fixture(scope="module")
@@ -297,9 +297,8 @@ def test_a_scale_is_found_where_the_gap_or_the_amplitude_is_held(scene_of_eq1, s
     record = replace(record, rows=record.rows * [1.0, -0.85])
     for held, value in (("gap", 0.01), ("amplitude", amplitude)):
         names = tuple(name for name in ALL if name != held)
-        found = fit(
-            record, with_values(scene_of_eq1, {held: value}), names, free=("phase", "offset", "scale")
-        )
+        at = with_values(scene_of_eq1, {held: value})
+        found = fit(record, at, names, free=("phase", "offset", "scale"))
         right(found, amplitude)
         assert found.estimate[-1] == pytest.approx(-0.85, abs=4.0 * found.errors[-1])
     rows = [Profile(parameter="gap", value=v, other="decay_rate", other_value=v, depth=v) for v in (1.0, 2.0)]
@@ -321,10 +320,8 @@ def test_a_long_record_is_thinned_and_an_amplitude_ten_times_off_is_said(run_stu
     assert ran.code == 0, ran.err
     assert "1 row in 3 of 48000 is fitted" in ran.err and ran.rows("quality")[0]["rows"] == "16000"
     assert re.search("fitted amplitude of 2.2.* mm contradicts the given 22", ran.err)
-    stuck = replace(
-        record, rows=np.column_stack([record.rows[:2000, 0], np.maximum(record.rows[:2000, 1], -0.008)])
-    )
-    (tmp_path / "b.csv").write_text(stuck.text())
+    stuck = np.maximum(record.rows[:2000], [-np.inf, -0.008])
+    (tmp_path / "b.csv").write_text(replace(record, rows=stuck).text())
     ran = run_study("identify", str(tmp_path / "b.csv"))
     assert ran.code == 3 and "the record has no answer: readings stick at -8 mm" in ran.err
     ran = run_study("identify", str(tmp_path / "b.csv"), "--fit", "gap", "amplitude", "scale")

@@ -118,9 +118,8 @@ def test_small_form(run_study, monkeypatch):
     monkeypatch.setattr(f"{package}.clouds.WAITS", 2)
     monkeypatch.setattr(f"{package}.pairs.GRID", 16)
     monkeypatch.setattr(f"{package}.pairs.HALVINGS", 4)
-    ran = run_study(
-        "last_period", "--quick", "--set", "drive.frequencies_hz=[23.4]", "--set", "modes.count=4"
-    )
+    given = "--set=drive.frequencies_hz=[23.4]", "--set=modes.count=4"
+    ran = run_study("last_period", "--quick", *given)
     assert ran.code == 0 and len(ran.summary["rows"]) == 3 * (1 + 2)
     assert len(ran.rows("p10")) == 5 and ran.rows("p10")[1]["born_at_excess_0.01"] == "10"
     assert ran.summary["p10"][1]["p10_from"] == pytest.approx(4.3e-3, rel=0.1)

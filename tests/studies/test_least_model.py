@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from itertools import product
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from oscillators import slow
 
 from contact import Chatter, HarmonicDrive, StroboscopicMap, first_collision
 from contact.orbits import Shooting, born, born_period, fold_of
@@ -20,11 +22,8 @@ from studies.physics.least_model import LADDER, least_modes, questions, referenc
 from studies.shell.scene import Scene, beam_at, corresponding, read_scene
 
 #: What a search over modes, meshes and laws that followed every orbit found for the letter's scene.
-BY_SEARCH = [
-    pytest.param({"born_period": 0.0, "fold": 0.07}, 10, marks=pytest.mark.slow),
-    ({"frequency 10": 1e-3}, 10),
-    ({"frequency 1": 1e-5, "kick": 0.005}, 12),
-]
+BY_SEARCH = [({"frequency 10": 1e-3}, 10), ({"frequency 1": 1e-5, "kick": 0.005}, 12)]
+BY_SEARCH += slow(({"born_period": 0.0, "fold": 0.07}, 10))
 
 
 @pytest.mark.parametrize(("needs", "modes"), BY_SEARCH)
@@ -34,7 +33,7 @@ def test_the_choice_is_that_of_the_long_search(letter_scene, needs, modes):
     assert scene.provenance()["modes.count"] == "least"
 
 
-@pytest.mark.parametrize("frequency", [21.50, pytest.param(22.20, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("frequency", [21.50, *slow(22.20)])
 def test_errors_of_folds_from_kicks_are_those_of_the_orbits_themselves(letter_scene, frequency):
     """Folds by shooting and continuation, an independent route, with 12 and 40 modes."""
     whole, found = reference_of(letter_scene), {}
@@ -168,7 +167,7 @@ def of_hysteresis(scene, oscillator, excess):
 
 STUDIES = [(time_trace, of_time_trace), (transitions, of_transitions), (hysteresis, of_hysteresis)]
 DRAWN = [(3, 0), (11, 1), (11, 2)]
-LONG = [pytest.param(seed, one, marks=pytest.mark.slow) for seed in range(40) for one in range(3)]
+LONG = slow(*product(range(40), range(3)))
 
 
 @pytest.mark.filterwarnings("ignore::beam.SuspiciousValue")
@@ -185,9 +184,8 @@ def test_what_a_study_prints_of_a_drawn_scene_is_that_of_the_reference(seed, num
     whole = reference_of(scene)
     if kept == whole.n_modes:
         return
-    (same, values), (sharp_same, sharp) = (
-        found(scene, beam_at(scene, frequency, model), excess) for model in (whole.truncated(kept), whole)
-    )
+    beams = (beam_at(scene, frequency, model) for model in (whole.truncated(kept), whole))
+    (same, values), (sharp_same, sharp) = (found(scene, beam, excess) for beam in beams)
     assert same == sharp_same
     for (value, _), (expected, tolerance) in zip(values, sharp, strict=False):
         assert value == pytest.approx(expected, abs=tolerance, nan_ok=True)

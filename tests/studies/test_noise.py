@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
+from oscillators import slow
 from scipy.special import gamma
 
 from contact.orbits import cloud
@@ -18,7 +20,7 @@ from studies.shell.scene import band_of
 
 SIGMA = 2.5e-4
 WHITE = Protocol(step=SIGMA, waiting=10_000, stability=SIGMA)
-DRIFT = Protocol(step=SIGMA, waiting=10_000, stability=SIGMA, correlation_s=100.0)
+DRIFT = replace(WHITE, correlation_s=100.0)
 LONGER = (4, 21.5, WHITE), (5, 22.2, WHITE), (5, 22.2, DRIFT), (6, 22.6, DRIFT)
 
 
@@ -138,13 +140,9 @@ def test_the_lag_of_a_fold_that_brownian_motion_carries_away():
     assert -np.mean(ends) == pytest.approx(LAG, abs=4.0 * np.std(ends) / math.sqrt(count))
 
 
-@pytest.mark.parametrize("correlation", [100.0, pytest.param(3600.0, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("correlation", [100.0, *slow(3600.0)])
 def test_a_drift_that_crosses_an_end_is_that_of_simulated_drifts(correlation):
-    protocol, frequency, found = (
-        Protocol(step=SIGMA, waiting=10_000, stability=SIGMA, correlation_s=correlation),
-        20.0,
-        [],
-    )
+    protocol, frequency, found = replace(WHITE, correlation_s=correlation), 20.0, []
     for i in range(400):
         dice = np.random.default_rng([9, i])
         drift, part, late = protocol.drift(frequency, dice), dice.random(), False
@@ -193,14 +191,7 @@ def test_a_cloud_is_what_an_independent_program_found(place):
     assert min(np.max(np.abs(each / theirs - 1.0)) for each in shifts) < 4 * 0.0013
 
 
-@pytest.mark.parametrize(
-    "m, frequency, protocol",
-    [
-        (4, 21.5, DRIFT),
-        (6, 22.6, WHITE),
-        *(pytest.param(m, f, each, marks=pytest.mark.slow) for m, f, each in LONGER),
-    ],
-)
+@pytest.mark.parametrize("m, frequency, protocol", [(4, 21.5, DRIFT), (6, 22.6, WHITE), *slow(*LONGER)])
 def test_formulas_are_what_scans_find(place, protocol, m, frequency):
     """Even where the noise is as large as the hysteresis, at 22.60 Hz."""
     here = place(m, frequency)

@@ -93,10 +93,8 @@ def test_meets_its_tolerance_with_the_same_touches(label: str, name: str) -> Non
     run = case.follow(solver(label, tolerance))
     assert distance(run, exact, case.oscillator) < within
     np.testing.assert_array_equal(run.strobe_impacts, exact.strobe_impacts)
-    largest = np.abs(exact.displacement).max()
-    np.testing.assert_allclose(
-        run.strobe_displacement, exact.strobe_displacement, rtol=0, atol=within * largest
-    )
+    away = np.abs(run.strobe_displacement - exact.strobe_displacement)
+    assert np.max(away, initial=0.0) <= within * np.abs(exact.displacement).max()
     fastest = 2 * math.pi / case.oscillator.model.omega.max()
     speed = np.abs(exact.impacts.approach).max()
     lost = 0.5 * speed**2 / float(case.oscillator.model.phi @ case.oscillator.model.phi)
@@ -136,10 +134,8 @@ def test_times_wanted_anywhere(label: str) -> None:
     inside = np.linspace(exact.impacts.start[0], exact.impacts.end[0], 9)
     first, last = case.start.time, case.start.time + case.length
     times = np.sort(np.concatenate([inside, [first, last, last], exact.strobe_time, exact.strobe_time]))
-    truth, found = (
-        simulate(case.oscillator, case.start, duration=case.length, times=times, method=method)
-        for method in (None, solver(label, 1e-11))
-    )
+    given, methods = dict(duration=case.length, times=times), (None, solver(label, 1e-11))
+    truth, found = (simulate(case.oscillator, case.start, **given, method=method) for method in methods)
     scale = np.abs(truth.displacement).max()
     np.testing.assert_allclose(found.displacement, truth.displacement, atol=1e-7 * scale, rtol=0)
     np.testing.assert_array_equal(found.displacement[-1], found.end.displacement)
@@ -163,11 +159,9 @@ def test_threads_do_not_share_a_compiled_integrator() -> None:
 
 def test_wrong_use_is_refused() -> None:
     method = OutsideSolver(solver="scipy DOP853", tolerance=1e-10)
-    late = replace(
-        EQUATION_1, stop=contact.Stop(gap=1.0, law=contact.DelayedRestitution(restitution=0.1, delay=1e-4))
-    )
+    late = contact.DelayedRestitution(restitution=0.1, delay=1e-4)
     with pytest.raises(TypeError):
-        simulate(late, periods=1, method=method)
+        simulate(equation_1(22.2, late), periods=1, method=method)
     for law in (
         LinearContact(stiffness=3e5, damping=20.0),
         contact.HuntCrossley(stiffness=1e9, dissipation=0.3),

@@ -59,12 +59,8 @@ def test_a_heavy_ball_on_a_clamped_disc_against_the_closed_form(seated):
         p = far * mesh.p / np.maximum(np.linalg.norm(mesh.p, axis=0), 1e-99)
         seat = np.flatnonzero(far[mesh.t].max(axis=0) < b * (1.0 + 1e-6))
         edge = a * math.cos(0.6 / n)
-        disc = named(
-            sk.MeshTri(p, mesh.t),
-            lambda x, edge=edge: np.linalg.norm(x, axis=0) > edge,
-            lambda x: x[1] == 0.0,
-            seat,
-        )
+        sides = (lambda x, edge=edge: np.linalg.norm(x, axis=0) > edge), (lambda x: x[1] == 0.0)
+        disc = named(sk.MeshTri(p, mesh.t), *sides, seat)
         found.append(plate_modes(disc, SHEET, SHEET, Tip(mass=1e5), 1, seated=seated))
     ring = a**2 - b**2 - 4.0 * (a * b * math.log(a / b)) ** 2 / (a**2 - b**2)
     closed = (ring if seated else a**2) / (16.0 * math.pi * RIGIDITY)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 
 import pytest
+from oscillators import slow
 
 from contact.orbits import Shooting, born, born_period, fold_excess, fold_of, orbit_end, settle
 from contact.orbits.branches.family_curve import whole_branch
@@ -36,9 +37,7 @@ def test_eq_1_and_the_beam_show_p10_above_grazing_where_the_letter_did(letter_sc
         assert born_period(strobed_at(name, letter_scene, 23.40, letter_model), 1e-2) == PERIODS[23.40]
 
 
-@pytest.mark.parametrize(
-    "frequency", [20.90, *(pytest.param(f, marks=pytest.mark.slow) for f in sorted(PERIODS) if f != 20.90)]
-)
+@pytest.mark.parametrize("frequency", [20.90, *slow(*sorted(PERIODS.keys() - {20.90}))])
 def test_the_orbits_end_where_the_closed_forms_say(letter_scene, letter_model, frequency):
     for name in ("map", "single_mode"):
         strobed = strobed_at(name, letter_scene, frequency)
@@ -65,9 +64,8 @@ def test_the_beams_p8_ends_where_another_touch_grazes(letter_scene, letter_model
     assert end.excess == pytest.approx(1.3799e-6, rel=1e-3)
     seen = {}
     for excess in (2e-6, 1.39e-6, 1.37e-6, 1e-6, 3e-7, 1e-7):
-        settled = settle(
-            strobed.at(excess), end.state, most_cycles=6000, tolerance=1e-3 * excess, prove=False
-        )
+        limits = dict(most_cycles=6000, tolerance=1e-3 * excess)
+        settled = settle(strobed.at(excess), end.state, prove=False, **limits)
         seen[excess] = settled.period, settled.impacts
     assert seen == {2e-6: (8, 1), 1.39e-6: (8, 1), 1.37e-6: (8, 2), 1e-6: (1, 1), 3e-7: (1, 1), 1e-7: (1, 1)}
 

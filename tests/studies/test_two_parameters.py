@@ -9,6 +9,7 @@ from itertools import count
 
 import numpy as np
 import pytest
+from oscillators import slow
 
 from contact import StroboscopicMap, first_collision, simulate
 from contact.orbits import KickFamily, born, born_period, orbit_end
@@ -39,13 +40,7 @@ def test_no_touch_is_held_longer_than_it_would_be_behind_the_wall(letter_scene, 
     assert law.restitution(0.1 * slowest) == pytest.approx(law.restitution(slowest), rel=1e-9)
 
 
-@pytest.mark.parametrize(
-    ("frequency", "m"),
-    [
-        (21.50, 4),
-        *(pytest.param(*each, marks=pytest.mark.slow) for each in ((20.90, 3), (22.20, 5), (23.40, 11))),
-    ],
-)
+@pytest.mark.parametrize(("frequency", "m"), [(21.50, 4), *slow((20.90, 3), (22.20, 5), (23.40, 11))])
 def test_the_orbit_ends_where_the_kicks_of_the_beam_say(letter_scene, letter_model, frequency, m):
     """Simulated with restitution and delay, and without simulation by kick and shift of each collision."""
     strobed = StroboscopicMap(oscillator=two_parameters_at(letter_scene, frequency, letter_model))

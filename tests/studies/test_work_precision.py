@@ -84,9 +84,8 @@ def thrown() -> Reference:
     size, times = 0.005 / oscillator.model.phi[0], ("probe", "duration", "period")
     motion = dict(oscillator=oscillator, start=start, size=size, speed=0.4)
     costs = dict(cost_start=start, cost_periods=1, contact_time=touch)
-    return reference_of(
-        Problem(name="thrown", title="", **motion, **dict.fromkeys(times, 1.5 * touch), **costs)
-    )
+    ends = dict.fromkeys(times, 1.5 * touch)
+    return reference_of(Problem(name="thrown", title="", **motion, **ends, **costs))
 
 
 @pytest.mark.parametrize("label", [one for one in STEPS_OF if "Jean" not in one and "nonsm" not in one])

@@ -19,8 +19,7 @@ from contact.orbits.branches.events import (
     CLOSE,
     NEARLY,
     Event,
-    EventPoint,
-    event_of,
+    event_at,
     events_between,
     refined,
     with_undecided,
@@ -67,7 +66,7 @@ class Leg(NamedTuple):
     """
 
     points: list[Point]
-    events: list[EventPoint]
+    events: list[Event]
     ended: str
 
 
@@ -123,7 +122,7 @@ def _leg_between(curve: Curve, a: Point, b: Point, edges: list[Point]) -> Leg:
     found = [event for c, d in pairwise(points) for event in events_between(curve, c, d)]
     events = with_undecided(found, edges)
     for i, event in enumerate(events):
-        if event.kind == "branch point" and event.point.orbit.repeats(NEARLY) > a.orbit.repeats():
+        if event.kind == "branch point" and event.orbit.repeats(NEARLY) > a.orbit.repeats():
             return Leg([], events[: i + 1], SHORTER)
     return Leg(points[1:], events, "")
 
@@ -132,12 +131,12 @@ def _leg_to_edge(curve: Curve, looked: Point, here: Point, why: str) -> Leg:
     """The leg from `looked` to `here`, the last point before a graze, or before the branch is lost."""
     points = [here] if here is not looked else []
     if why == CROSSING:
-        return Leg(points, [EventPoint(kind="branch point", point=here)], SHORTER)
+        return Leg(points, [event_at(curve, "branch point", here)], SHORTER)
     events = with_undecided(events_between(curve, looked, here) if points else [], [here])
     beyond = _with_other_touches(curve, here)
     if beyond is None and not grazes(here.orbit):
         return Leg(points, events, why)
-    events.append(EventPoint(kind="grazing", point=here))
+    events.append(event_at(curve, "grazing", here))
     if beyond is None:
         return Leg(points, events, f"one of {here.orbit.impacts} touches is a graze")
     return Leg([*points, beyond], events, "")
@@ -155,16 +154,11 @@ def branch_of(curve: Curve, first: Point, longest: float, stride: float) -> tupl
         sides.append(Leg([point for leg in legs for point in leg.points], events, legs[-1].ended))
     before, after = sides
     points = [*before.points[::-1], first, *after.points]
-    twice = {
-        id(b)
-        for a in before.events[:1]
-        for b in after.events[:1]
-        if a.kind == b.kind and np.linalg.norm(a.point.x - b.point.x) < CLOSE
-    }
-    events = [*before.events[::-1], *(event for event in after.events if id(event) not in twice)]
+    pairs = zip(before.events[:1], after.events[:1], strict=False)  # an event at `first` is found from both
+    twice = sum(a.kind == b.kind and bool(np.linalg.norm(a.x - b.x) < CLOSE) for a, b in pairs)
     return Branch(
         orbits=tuple(point.orbit for point in points),
-        events=tuple(event_of(curve, each) for each in events),
+        events=(*before.events[::-1], *after.events[twice:]),
         ended_low=before.ended,
         ended_high=after.ended,
     ), points

@@ -5,17 +5,15 @@ the first touch (``contact.orbits.families.continuable_family``).  Down to grazi
 factor.  With several touches v can turn round along the curve (``contact.orbits.branches.branch``).
 """
 
-import math
 from contextlib import suppress
 from dataclasses import replace
-from itertools import pairwise
 
 import numpy as np
 
 from beam.parameters import InvalidValue, require_array, require_kind, require_within
 from contact.errors import ContactError
 from contact.orbits.branches.branch import SMALLEST, Branch, branch_of
-from contact.orbits.branches.events import Arc, Event, event_of
+from contact.orbits.branches.events import Event
 from contact.orbits.branches.family_curve import (
     GREATEST_SPEED,
     FamilyCurve,
@@ -86,9 +84,9 @@ def first_event(family: ContinuableFamily, start: PeriodicOrbit, lowest: float) 
     require_orbit(family, "start", start, member=True)
     require_within("lowest", lowest, "[1]", above=-1)
     last = start
-    for leg, curve in downhill(family, start):
+    for leg in downhill(family, start):
         if leg.events:
-            return event_of(curve, leg.events[0])
+            return leg.events[0]
         last = leg.points[-1].orbit if leg.points else last
         if last.excess < lowest:
             return None
@@ -112,8 +110,7 @@ def fold_of(family: ContinuableFamily, near: PeriodicOrbit | None = None) -> Per
     ----------
     family : Shooting
         If its fold is not `admissible`, the family with as many touches as the collision of the kick
-        description is tried too.  The returned orbit has the properties `admissible`, and `touches`: how
-        often its motion touches the stop.
+        description is tried too.  The returned orbit says whether it is `admissible`.
     near : PeriodicOrbit, optional
         An orbit close to the fold, such as the fold at a neighbouring frequency.  The first fold downhill
         from it is taken for the lowest.  Otherwise it starts from the fold of the kick description.
@@ -140,7 +137,7 @@ def lowest_fold(
         kick = family.kicks.fold()
         if kick is None or kick.kick.touches == fold.impacts:
             return fold, losses
-        other = _fold_of_these_touches(family.with_impacts(kick.kick.touches), None)[0]
+        other = _fold_of_these_touches(replace(family, impacts=kick.kick.touches), None)[0]
     except ContactError:
         return fold, []
     return (other if other is not None and other.admissible else fold), []
@@ -155,8 +152,8 @@ def _fold_of_these_touches(
     with suppress(ContactError):  # the search of the whole branch says why
         guess = near or fold_of_the_kicks(family)
         legs = downhill(family, family.at_speed(guess.speed, near)) if guess else ()
-        events = (event for leg, _ in legs for event in leg.events)
-        fold = next((event.point.orbit for event in events if event.kind == "fold"), None)
+        events = (event for leg in legs for event in leg.events)
+        fold = next((event.orbit for event in events if event.kind == "fold"), None)
     if fold is not None and fold.excess < 0.0:
         return fold, []
     branch = whole_branch(family, near if fold is None else fold)[2]
@@ -167,29 +164,6 @@ def _fold_of_these_touches(
     if losses and any(orbit.stable for orbit in branch.orbits):
         return None, sorted(losses, key=lambda event: -event.orbit.excess)
     return None, []
-
-
-def orbits_at(family: ContinuableFamily, excess: float) -> tuple[PeriodicOrbit, ...]:
-    """The orbits at F/F_g - 1 = `excess` on the whole branch, by rising approach velocity.
-
-    BranchEnded is raised as in `fold_of`, and if another orbit lies beyond the bounds of the speed.
-    """
-    require_within("excess", excess, "[1]", above=-1)
-    _require(family)
-    curve, points, branch = whole_branch(family, None)
-    found = []
-    for last in (branch.orbits[0], branch.orbits[-1]):
-        fast, slow = (math.isclose(last.speed, bound) for bound in (curve.fastest, curve.slowest))
-        to_graze = slow and family.impacts == 1 and 0.0 < excess / last.excess < 1.0
-        if to_graze or (fast and last.excess < excess):
-            raise branch_ended(last, f"an orbit at excess {excess:g} is beyond the speeds of the search")
-    for start, end in pairwise(points):
-        a, b = (point.oriented(end.x - start.x) for point in (start, end))
-        turns = [Arc(curve, a, b).root(lambda point: point.rate)] if a.rate * b.rate < 0.0 else []
-        for c, d in pairwise([a, *turns, b]):  # both sides of a fold may have an orbit
-            if (c.orbit.excess - excess) * (d.orbit.excess - excess) < 0.0:
-                found.append(Arc(curve, c, d).root(lambda point: point.orbit.excess - excess).orbit)
-    return tuple(sorted(found, key=lambda orbit: orbit.speed))
 
 
 def fold_of_the_kicks(family: ContinuableFamily) -> SingleImpactOrbit | None:
@@ -208,7 +182,7 @@ def fold_along_frequency(
     found: list[PeriodicOrbit | ContactError | None] = []
     for frequency in require_array("frequencies", frequencies, "Hz", dimensions=1, words="drive frequencies"):
         drive = replace(family.oscillator.driven, frequency=float(frequency))
-        here = family.of(replace(family.oscillator, drive=drive))
+        here = replace(family, oscillator=replace(family.oscillator, drive=drive))
         result: PeriodicOrbit | ContactError | None = None
         for start in dict.fromkeys((near, None)):
             try:

@@ -72,7 +72,7 @@ class Curve(ABC):
         def pick(there: Array, _: Iterate) -> tuple[float, Array]:
             return float(normal @ (there - x)), normal
 
-        return newton(self.equations(x, touches), x, pick, self.like.period)
+        return newton(self.equations(x, touches), x, pick)
 
     def at(self, x: Array, touches: int) -> Point:
         """The point next to `x` with the same last unknown, or the nearest one where that turns round."""

@@ -15,11 +15,12 @@ An event is certain if a multiplier is where it must be, if the located orbit li
 neighbours, and if no other event lies next to it.  Otherwise it is called "undecided".
 """
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from beam.parameters import Array
 from contact.errors import ContactError
 from contact.orbits.branches.curve import Curve, why_no_neighbours
 from contact.orbits.families.equations import Point
@@ -57,24 +58,19 @@ class Event:
         is closer than 1e-6 of arc length.
     orbit, parameter : PeriodicOrbit, float or None
         The orbit there, and its place on a path (``contact.orbits.branches.path``).
+    x : ndarray, optional
+        The unknowns of the curve there (``contact.orbits.branches.curve``).
     """
 
     kind: str
     orbit: PeriodicOrbit
     parameter: float | None = None
+    x: Array = field(default_factory=lambda: np.empty(0), repr=False)
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class EventPoint:
-    """An event as a point of a curve."""
-
-    kind: str
-    point: Point
-
-
-def event_of(curve: Curve, found: EventPoint) -> Event:
-    """The event of a point on a curve, without the curve."""
-    return Event(kind=found.kind, orbit=found.point.orbit, parameter=curve.parameter(found.point))
+def event_at(curve: Curve, kind: str, point: Point) -> Event:
+    """The event of this kind at a point of a curve."""
+    return Event(kind=kind, orbit=point.orbit, parameter=curve.parameter(point), x=point.x)
 
 
 def torus(orbit: PeriodicOrbit) -> float:
@@ -188,13 +184,13 @@ def refined(curve: Curve, a: Point, b: Point, depth: int = 0) -> list[Point]:
     return [*refined(curve, a, middle, depth + 1), *refined(curve, middle, b, depth + 1)]
 
 
-def events_between(curve: Curve, a: Point, b: Point, depth: int = 0) -> list[EventPoint]:
+def events_between(curve: Curve, a: Point, b: Point, depth: int = 0) -> list[Event]:
     """The events from `a`, itself included, to its neighbour `b`, in their order along the curve.
 
     An event that is not sound is looked for again in both halves of the way.  A curve with `admissible_only`
     has its grazes where it ends.
     """
-    between, found = Arc(curve, a, b), list[EventPoint]()
+    between, found = Arc(curve, a, b), list[Event]()
     for tested, test in TESTS.items():
         kind = tested
         if (kind == "grazing" and curve.admissible_only) or not passes(test(a), test(b)):
@@ -215,33 +211,33 @@ def events_between(curve: Curve, a: Point, b: Point, depth: int = 0) -> list[Eve
             if middle is not None:
                 halves = ((a, middle), (middle, b))
                 return [event for c, d in halves for event in events_between(curve, c, d, depth + 1)]
-        found.append(EventPoint(kind=kind if sound else "undecided", point=point))
-    return sorted(found, key=lambda event: float(np.linalg.norm(event.point.x - a.x)))
+        found.append(event_at(curve, kind if sound else "undecided", point))
+    return sorted(found, key=lambda event: float(np.linalg.norm(event.x - a.x)))
 
 
-def _around_branch_point(between: Arc, point: Point) -> list[EventPoint]:
+def _around_branch_point(between: Arc, point: Point) -> list[Event]:
     """A branch point, and the events before and behind it."""
     at = float((point.x - between.a.x) @ between.chord) / between.length**2
     aside, b = ASIDE / between.length, between.seen[1.0]
     before = events_between(between.curve, between.a, between(at - aside)) if at > aside else []
     behind = events_between(between.curve, between(at + aside), b) if at + aside < 1.0 else []
-    return [*before, EventPoint(kind="branch point", point=point), *behind]
+    return [*before, event_at(between.curve, "branch point", point), *behind]
 
 
-def with_undecided(found: list[EventPoint], edges: list[Point]) -> list[EventPoint]:
+def with_undecided(found: list[Event], edges: list[Point]) -> list[Event]:
     """The events, "undecided" where one lies next to another one or to an edge; a graze stays a graze.
 
     Events next to a branch point, where the equations are singular, are left out.
     """
 
-    def near(event: EventPoint, others: list[Point], distance: float) -> bool:
-        return any(np.linalg.norm(other.x - event.point.x) < distance for other in others)
+    def near(event: Event, others: Sequence[Event | Point], distance: float) -> bool:
+        return any(np.linalg.norm(other.x - event.x) < distance for other in others)
 
-    crossings = [event.point for event in found if event.kind == "branch point"]
-    kept = [event for event in found if event.point in crossings or not near(event, crossings, 2.0 * ASIDE)]
-    marked = list[EventPoint]()
+    crossings = [event for event in found if event.kind == "branch point"]
+    kept = [event for event in found if event in crossings or not near(event, crossings, 2.0 * ASIDE)]
+    marked = list[Event]()
     for event in kept:
-        others = [*edges, *(other.point for other in kept if other is not event)]
+        others: list[Event | Point] = [*edges, *(other for other in kept if other is not event)]
         alone = event.kind == "grazing" or not near(event, others, CLOSE)
         marked.append(event if alone else replace(event, kind="undecided"))
     return marked

@@ -82,13 +82,12 @@ def branch_ended(orbit: PeriodicOrbit, words: str) -> BranchEnded:
     return error
 
 
-def downhill(family: ContinuableFamily, start: PeriodicOrbit) -> Iterator[tuple[Leg, FamilyCurve]]:
+def downhill(family: ContinuableFamily, start: PeriodicOrbit) -> Iterator[Leg]:
     """The legs of the branch from `start` towards lower amplitudes."""
     curve = _curve_through(start, family)
     first = curve.start()
     first = first if first.rate <= 0.0 else first.oriented(-first.direction)
-    for leg in walk(curve, first, LONGEST_STRIDE, FIRST_STRIDE):
-        yield leg, curve
+    return walk(curve, first, LONGEST_STRIDE, FIRST_STRIDE)
 
 
 def at_graze(ended: str, last: PeriodicOrbit) -> bool:

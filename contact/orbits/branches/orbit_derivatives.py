@@ -20,6 +20,7 @@ from contact.orbits.families.family import PeriodicOrbit
 from contact.sensitivity.change import Change, Sensitivities
 from contact.sensitivity.replay import Replay, deviation_rates_at_strobe
 from contact.simulation import simulate
+from contact.trajectory import Trajectory
 
 STEEPEST = 1e10
 """Change of the start, in units of its size, per change of the equations, beyond which it is rounding.  At a
@@ -67,43 +68,41 @@ class OrbitDerivatives:
         return np.asarray(rate[: len(self.start)] @ self.start + rate[len(self.start) :])
 
     @cached_property
-    def _strobed(self) -> tuple[Array, Array]:
-        orbit, changes, n = self.orbit, self.changes, self.orbit.oscillator.n_modes
-        if not orbit.admissible:
-            raise orbit.failure(NoDerivative, "the orbit meets the stop at another time than its touches")
-        state, period = orbit.state(), orbit.oscillator.period
-        run = simulate(orbit.oscillator, state, periods=orbit.period)
-        replay, size = Replay(changes, run, state), 2 * n + 2
-        replay.tangent = np.eye(size, size + len(changes.changes))
-        strobes, found = np.hstack([run.strobe_displacement, run.strobe_velocity]), list[Array]()
-        for j, q in enumerate(strobes, start=1):
-            tangent = replay.to(j * period)[: 2 * n]
-            rates = deviation_rates_at_strobe(orbit.oscillator, q, bool(replay.touching(j * period)))
-            moved = tangent[:, :size] @ self.start + tangent[:, size:]
-            moved += np.multiply.outer(rates, j * changes.period - self.time)
-            found.append(moved + changes.steady(0.0))
-        return strobes, np.array(found)
+    def _run(self) -> Trajectory:
+        return simulate(self.orbit.oscillator, self.orbit.state(), periods=self.orbit.period)
 
     @property
     def strobes(self) -> Array:
         """The states (q, q') at the m strobes that follow the first touch, shape (m, 2 n_modes)."""
-        return self._strobed[0]
+        return np.hstack([self._run.strobe_displacement, self._run.strobe_velocity])
 
-    @property
+    @cached_property
     def strobes_changed(self) -> Array:
         """Derivatives of the states at the strobes, shape (m, 2 n_modes, P).
 
         NoDerivative is raised where the orbit meets the stop at another time than its touches, as at a graze.
         """
-        return self._strobed[1]
+        orbit, changes, n = self.orbit, self.changes, self.orbit.oscillator.n_modes
+        if not orbit.admissible:
+            raise orbit.failure(NoDerivative, "the orbit meets the stop at another time than its touches")
+        replay, period, size = Replay(changes, self._run, orbit.state()), orbit.oscillator.period, 2 * n + 2
+        replay.tangent = np.eye(size, size + len(changes.changes))
+        found = list[Array]()
+        for j, q in enumerate(self.strobes, start=1):
+            tangent = replay.to(j * period)[: 2 * n]
+            rates = deviation_rates_at_strobe(orbit.oscillator, q, bool(replay.touching(j * period)))
+            moved = tangent[:, :size] @ self.start + tangent[:, size:]
+            moved += np.multiply.outer(rates, j * changes.period - self.time)
+            found.append(moved + changes.steady(0.0))
+        return np.array(found)
 
 
 def _solved(orbit: PeriodicOrbit, changes: Sensitivities, *, at_speed: bool) -> Array:
     """Derivatives of z with respect to the parameters, and last to the speed or the amplitude itself, shape
     (2 n_modes + 2, P + 1)."""
     n, sizes = orbit.deviations.size, sizes_of(orbit.oscillator)
-    shot = shoot(orbit.oscillator, orbit.phase, orbit.deviations, orbit.period, orbit.impacts, changes)
-    equations = np.delete(slopes_of(shot, changes), n + 1 if at_speed else n + 2, axis=0)
+    flow = shoot(changes, orbit.phase, orbit.deviations, orbit.period, orbit.impacts)[2]
+    equations = np.delete(slopes_of(orbit, flow, changes), n + 1 if at_speed else n + 2, axis=0)
     unit = orbit.oscillator.unit_speed if at_speed else orbit.amplitude
     scale = np.concatenate([sizes, np.full(2, orbit.amplitude)])
     weight = np.concatenate([sizes, [orbit.oscillator.stop.gap, unit]])

@@ -86,12 +86,12 @@ class PathCurve(Curve):
         here = self.path(self.value(x))
         driven, phase = driven_at(here, z[-3:-1])
         several = Sensitivities(oscillator=driven, changes=(change,))
-        shot = shoot(driven, phase, z[:n], self.like.period, touches, several)
-        orbit, weight = shot.orbit, np.concatenate([self.scale[:n], [here.stop.gap, self.scale[-2]]])
+        orbit, miss, flow = shoot(several, phase, z[:n], self.like.period, touches)
+        weight = np.concatenate([self.scale[:n], [here.stop.gap, self.scale[-2]]])
         q = steady_motion(driven.motion(), phase)[0]
         height = float(here.tip(orbit.displacement + q)) - driven.motion().gap
-        residual = np.concatenate([shot.miss, [height, orbit.amplitude - here.driven.amplitude]]) / weight
-        rows = slopes_of(shot, several) * self.scale
+        residual = np.concatenate([miss, [height, orbit.amplitude - here.driven.amplitude]]) / weight
+        rows = slopes_of(orbit, flow, several) * self.scale
         p_slope = self.scale * np.eye(x.size)[-1]
         return Iterate(orbit, residual, rows[:-1] / weight[:, None], p_slope, rows[-1])
 

@@ -10,19 +10,17 @@ and down to grazing.
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Self
 
 import numpy as np
 
 from beam.parameters import Array, require, require_kind, require_whole, require_within
 from contact.errors import NotPeriodic
-from contact.orbits.families.equations import Iterate, driven_at, newton, shot_of, sizes_of
+from contact.orbits.families.equations import Iterate, driven_at, newton, shoot, sizes_of
 from contact.orbits.families.family import PeriodicOrbit
 from contact.orbits.families.kick import KickFamily
 from contact.oscillator import ImpactOscillator
-from contact.sensitivity.touch_flow import flow_over_periods
+from contact.sensitivity.change import Sensitivities
 from contact.simulation import simulate
-from contact.touch.passage import Touches
 from contact.trajectory import ImpactKind, Regime, State
 
 STEEPEST = 1e10
@@ -42,14 +40,6 @@ class ContinuableFamily:
         require_whole("impacts", self.impacts, "touches")
         _ = self.kicks
 
-    def of(self, oscillator: ImpactOscillator) -> Self:
-        """The same family of another oscillator."""
-        return replace(self, oscillator=oscillator)
-
-    def with_impacts(self, impacts: int) -> Self:
-        """The family with another number of touches."""
-        return replace(self, impacts=impacts)
-
     @cached_property
     def kicks(self) -> KickFamily:
         """The description by kicks, from which a search starts."""
@@ -68,11 +58,6 @@ class ContinuableFamily:
         rows = np.array([[*-phi, *still, 0.0], [*still, *-phi, 1.0]])
         return np.linalg.solve(steady, rows), np.linalg.solve(steady, [self.oscillator.stop.gap, 0.0])
 
-    def flow(self, start: Array) -> tuple[Array, Array, Touches]:
-        """End, tangent and record (``flow_over_periods``) of the flow from a touch with (u, v, S, C)."""
-        driven, phase = driven_at(self.oscillator, start[-2:])
-        return flow_over_periods(driven, self.period, phase, start[:-2], self.impacts)
-
     def unknowns(self, start: Array, speed: float) -> Array:
         """(u, v) in units of their sizes, and log v over 2 pi f gap, shape (2 n_modes + 1,)."""
         return np.append(start / self._sizes, math.log(speed / self.oscillator.unit_speed))
@@ -83,15 +68,14 @@ class ContinuableFamily:
         speed, start = self.oscillator.unit_speed * math.exp(x[-1]), x[:-1] * self._sizes
         drive, grazing = rows @ np.append(start, speed) + offset, self.oscillator.grazing_amplitude()
         driven, phase = driven_at(self.oscillator, drive)
-        flown = self.flow(np.append(start, drive))
-        shot = shot_of(driven, phase, start, self.period, flown, grazing, speed)
+        orbit, miss, flow = shoot(Sensitivities(oscillator=driven), phase, start, self.period, self.impacts)
         stretch = np.append(self._sizes, speed)
-        closing = shot.flow @ np.vstack([np.eye(n, size), rows]) - np.eye(n, size)
+        closing = flow @ np.vstack([np.eye(n, size), rows]) - np.eye(n, size)
         return Iterate(
-            shot.orbit,
-            shot.miss / self._sizes,
+            replace(orbit, speed=speed),
+            miss / self._sizes,
             closing * stretch / self._sizes[:, None],
-            drive @ rows * stretch / (shot.orbit.amplitude * grazing),
+            drive @ rows * stretch / (orbit.amplitude * grazing),
             speed * np.eye(size)[-1],
         )
 
@@ -103,7 +87,7 @@ class ContinuableFamily:
                 return 0.0, np.eye(x.size)[-1]
             return here.orbit.excess - excess, here.parameter_slope
 
-        point = newton(self.equations, x, pick, self.period)
+        point = newton(self.equations, x, pick)
         if not abs(point.direction[-1]) * STEEPEST > 1.0:
             words = f"the orbits of period {self.period} do not follow from their approach velocity here"
             raise point.orbit.failure(NotPeriodic, words)
@@ -120,6 +104,8 @@ class ContinuableFamily:
             require_orbit(self, "near", near)
         start = (near or self.kicks.orbit(speed)).deviations
         return self._solve(self.unknowns(start, speed), speed=speed)
+
+    orbit = at_speed  # its name in every family
 
     def at_excess(self, excess: float, near: PeriodicOrbit) -> PeriodicOrbit:
         """The orbit at F/F_g - 1 = `excess` that is next to `near`."""
@@ -139,10 +125,6 @@ class ContinuableFamily:
         i = int(np.flatnonzero(hits)[0])
         start = self.unknowns(run.impacts.deviations_start[i].ravel(), run.impacts.approach[i])
         return self._solve(start, excess=self.oscillator.excess)
-
-    def orbit(self, speed: float) -> PeriodicOrbit:
-        """The orbit with approach velocity `speed` [m/s], found from the kick description."""
-        return self.at_speed(speed)
 
 
 def require_orbit(family: ContinuableFamily, name: str, orbit: object, *, member: bool = False) -> None:

@@ -32,8 +32,8 @@ from contact.orbits.families.family import PeriodicOrbit
 from contact.oscillator import ImpactOscillator
 from contact.sensitivity.change import Sensitivities
 from contact.sensitivity.replay import deviation_rates
-from contact.sensitivity.touch_flow import flow_over_periods
-from contact.touch.passage import Touches
+from contact.sensitivity.touch_flow import FLOWN, flow_error, flow_from_touch
+from contact.touch.passage import new_touches
 
 CONVERGED = 1e-12  # largest residual over the sizes; rounding of the flow over m periods is about 1e-14
 
@@ -57,49 +57,38 @@ def drive_of(orbit: PeriodicOrbit) -> Array:
     return orbit.oscillator.driven.components(orbit.phase)
 
 
-def amplitude_and_time(drive: Array, w: float) -> tuple[float, float]:
-    """Base amplitude [m] and drive time [s] at which the drive of frequency `w` [rad/s] has (S, C)."""
-    return math.hypot(*drive), math.atan2(*drive) % (2.0 * math.pi) / w
-
-
 def driven_at(oscillator: ImpactOscillator, drive: Array) -> tuple[ImpactOscillator, float]:
     """The oscillator with the amplitude of `drive` = (S, C), and the drive time of the touch [s]."""
-    amplitude, time = amplitude_and_time(drive, oscillator.driven.angular_frequency)
-    return oscillator.with_amplitude(amplitude), time
+    time = math.atan2(*drive) % (2.0 * math.pi) / oscillator.driven.angular_frequency
+    return oscillator.with_amplitude(math.hypot(*drive)), time
 
 
-class Shot(NamedTuple):
-    """The motion over m drive periods from a touch, as an `orbit` that need not close.
+def shoot(
+    changes: Sensitivities, phase: float, start: Array, period: int, impacts: int
+) -> tuple[PeriodicOrbit, Array, Array]:
+    """The motion over m = `period` drive periods from a touch, as an orbit that need not close.
 
-    `miss` is (u, v) at the end less (u, v) at the start, shape (2 n_modes,).  `flow` holds the derivatives of
-    (u, v) at the end with respect to z and P parameters, shape (2 n_modes, 2 n_modes + 2 + P).
+    It starts at drive time `phase` [s] with deviations `start`, shape (2 n_modes,).  Returned are also (u, v)
+    at the end less `start`, and the derivatives of (u, v) at the end with respect to z and P parameters, the
+    `changes`, shape (2 n_modes, 2 n_modes + 2 + P).
+
+    NotPeriodic is raised if the motion has fewer touches than `impacts` or a contact does not end, and
+    ContactTooStiff if a contact needs more than ``touch_flow.MOST_STEPS``.
     """
-
-    orbit: PeriodicOrbit
-    miss: Array
-    flow: Array
-
-
-def shot_of(
-    oscillator: ImpactOscillator,
-    phase: float,
-    start: Array,
-    period: int,
-    flown: tuple[Array, Array, Touches],
-    grazing: float,
-    speed: float | None = None,
-) -> Shot:
-    """The motion from a touch with deviations `start`, shape (2 n_modes,), at drive time `phase` [s].
-
-    `flown` holds its end, tangent and record (``touch_flow.flow_over_periods``); `grazing` is the grazing
-    amplitude [m].  `speed` is the approach speed [m/s], if it is known more exactly than from the record.
-    """
-    (u, v), (end, flow, record), n = start.reshape(2, -1), flown, start.size
+    oscillator, vary, n, (u, v) = changes.oscillator, changes.variation, start.size, start.reshape(2, -1)
+    flow, end = np.eye(n + 2, n + 2 + len(vary.scalars)), np.array([u, v])
+    record = new_touches(impacts, u.size)
+    outcome = flow_from_touch(vary, phase, end[0], end[1], period * oscillator.period, flow, record)
+    if outcome != FLOWN:
+        words = f"an orbit of period {period} with {impacts} touches was lost"
+        raise flow_error(outcome, phase, float(record.log[0]["approach"]), words)
+    rates = deviation_rates(oscillator.motion(), u, v)
+    flow[:n, n + 2 :] += np.multiply.outer(rates, period * changes.period)
     orbit = PeriodicOrbit(
         oscillator=oscillator,
         period=period,
-        excess=oscillator.driven.amplitude / grazing - 1.0,
-        speed=float(record.log[0]["approach"]) if speed is None else speed,
+        excess=oscillator.excess,
+        speed=float(record.log[0]["approach"]),
         phase=phase,
         displacement=u,
         velocity=v,
@@ -108,48 +97,25 @@ def shot_of(
         slope=math.nan,
         residual=math.nan,
     )
-    return Shot(orbit, end - start, flow[:n])
+    return orbit, end.ravel() - start, flow[:n]
 
 
-def shoot(
-    oscillator: ImpactOscillator,
-    phase: float,
-    start: Array,
-    period: int,
-    impacts: int,
-    sensitivities: Sensitivities,
-) -> Shot:
-    """The motion from a touch with its derivatives with respect to the P parameters of `sensitivities`.
-
-    Raises the errors of ``touch_flow.flow_over_periods``.
-    """
-    flown = flow_over_periods(oscillator, period, phase, start, impacts, sensitivities.variation)
-    shot = shot_of(oscillator, phase, start, period, flown, oscillator.grazing_amplitude())
-    rates = deviation_rates(oscillator.motion(), shot.orbit.displacement, shot.orbit.velocity)
-    shot.flow[:, start.size + 2 :] += np.multiply.outer(rates, period * sensitivities.period)
-    return shot
-
-
-def tip_slopes(orbit: PeriodicOrbit, sensitivities: Sensitivities) -> tuple[Array, Array]:
+def tip_slopes(orbit: PeriodicOrbit, changes: Sensitivities) -> tuple[Array, Array]:
     """Derivatives of y and y' at the first touch with respect to z and the parameters."""
     size = orbit.deviations.size + 2
-    unit = np.eye(size, size + len(sensitivities.changes))
-    found: tuple[Array, Array] = all_tip_changes(
-        sensitivities.variation, unit, orbit.displacement, orbit.velocity, orbit.phase
-    )
+    unit, vary = np.eye(size, size + len(changes.changes)), changes.variation
+    found: tuple[Array, Array] = all_tip_changes(vary, unit, orbit.displacement, orbit.velocity, orbit.phase)
     return found
 
 
-def slopes_of(shot: Shot, sensitivities: Sensitivities) -> Array:
+def slopes_of(orbit: PeriodicOrbit, flow: Array, changes: Sensitivities) -> Array:
     """Derivatives of the equations with respect to z and the parameters, shape (2 n_modes + 3, .).
 
-    The rows belong to (u, v), y, the amplitude and the approach speed.
+    The rows belong to (u, v), y, the amplitude and the approach speed; `orbit` and `flow` are from `shoot`.
     """
-    n = len(shot.flow)
-    height, rate = tip_slopes(shot.orbit, sensitivities)
-    drive = drive_of(shot.orbit) / shot.orbit.amplitude
-    amplitude = np.concatenate([np.zeros(n), drive, -sensitivities.amplitude])
-    return np.vstack([shot.flow - np.eye(n, shot.flow.shape[1]), height, amplitude, rate])
+    height, rate = tip_slopes(orbit, changes)
+    amplitude = np.concatenate([np.zeros(len(flow)), drive_of(orbit) / orbit.amplitude, -changes.amplitude])
+    return np.vstack([flow - np.eye(*flow.shape), height, amplitude, rate])
 
 
 class Iterate(NamedTuple):
@@ -191,9 +157,7 @@ class Point:
         return replace(self, direction=-self.direction, rate=-self.rate, determinant=-self.determinant)
 
 
-def newton(
-    equations: Equations, x: Array, pick: Callable[[Array, Iterate], tuple[float, Array]], period: int
-) -> Point:
+def newton(equations: Equations, x: Array, pick: Callable[[Array, Iterate], tuple[float, Array]]) -> Point:
     """The solution next to `x` of the equations and of one more, ``pick(x, iterate)``: value and gradient.
 
     One step is made in any case, since near grazing another orbit can lie within the tolerance.  Raises
@@ -212,25 +176,20 @@ def newton(
         if iteration > 0:
             if error < best:
                 found, best = (x, here, matrix, inverse[:, -1]), error
-            if found is not None and (best < CONVERGED or (best < ROUNDED and not error <= best)):
-                return _point(found, best)
+            if best < CONVERGED or (best < ROUNDED and not error <= best):
+                break
         change = inverse @ np.append(here.residual, value)
         x = x - change * min(1.0, LONGEST_STEP / max(float(np.max(np.abs(change))), 1e-300))
         if not np.all(np.isfinite(x)):
             break
-    if found is not None and best < ROUNDED:
-        return _point(found, best)
-    words = f"Newton's method found no orbit of period {period} (residual {error:.1e})"
-    raise NotPeriodic(time=0.0, gap=0.0, velocity=0.0, detail=words)
-
-
-def _point(solution: tuple[Array, Iterate, Array, Array], error: float) -> Point:
-    """The point at a solution (x, iterate, matrix of all equations, last column of its inverse)."""
-    x, here, matrix, across = solution
+    if found is None or not best < ROUNDED:
+        words = f"Newton's method found no orbit of period {here.orbit.period} (residual {error:.1e})"
+        raise NotPeriodic(time=0.0, gap=0.0, velocity=0.0, detail=words)
+    x, here, matrix, across = found
     length = float(np.linalg.norm(across))
     direction = across / length
     rate, speed_rate = float(here.parameter_slope @ direction), float(here.speed_slope @ direction)
-    orbit = replace(here.orbit, residual=error, slope=rate / speed_rate if speed_rate else math.inf)
+    orbit = replace(here.orbit, residual=best, slope=rate / speed_rate if speed_rate else math.inf)
     # with the direction in place of the last row of the matrix, its determinant grows by the factor `length`
     determinant = float(np.linalg.det(matrix)) * length
     return Point(x=x, direction=direction, orbit=orbit, rate=rate, determinant=determinant)

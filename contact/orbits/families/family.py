@@ -14,7 +14,7 @@ fold, where a node and a saddle meet.  Four descriptions offer it:
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import NamedTuple, Protocol, TypeVar
+from typing import Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,7 +27,7 @@ from contact.flight.tip_search import peaks_of_flight, tip_at
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.touch.passage import Touches
-from contact.trajectory import ImpactKind, State
+from contact.trajectory import State
 
 Failure = TypeVar("Failure", bound=ContactError)
 CLOSING = 1e-9  # part of a flight by which it is prolonged, so that the touch at its end is met
@@ -84,20 +84,6 @@ class Family(Protocol):
         """The orbit of least amplitude, at which node and saddle meet; None if there is none."""
 
 
-class Release(NamedTuple):
-    """The end of the last touch of an orbit: its `time` since the first touch [s] and deviations (u, u').
-
-    `leaves` says whether the tip has a velocity away from the wall, or is at rest on it.  The touch that
-    closes the orbit may miss it by the time `slack` [s].
-    """
-
-    time: float
-    displacement: Array
-    velocity: Array
-    leaves: bool
-    slack: float
-
-
 @dataclass(frozen=True, kw_only=True, eq=False)
 class TouchOrbit(ABC):
     """A periodic orbit of an impact oscillator, by its first touch.
@@ -127,8 +113,12 @@ class TouchOrbit(ABC):
         """Derivative of (u, u') over m/f from touch to touch at fixed drive, (2 n_modes, 2 n_modes)."""
 
     @abstractmethod
-    def release(self) -> Release:
-        """The end of the last touch, where the flight to the first touch begins."""
+    def release(self) -> tuple[float, Array, Array, bool, float]:
+        """The end of the last touch: its time since the first touch [s] and deviations u and u'.
+
+        Then come whether the tip has a velocity away from the wall, or else is at rest on it, and the time by
+        which the touch that closes the orbit may be missed [s].
+        """
 
     @property
     def deviations(self) -> Array:
@@ -216,16 +206,6 @@ class PeriodicOrbit(TouchOrbit):
         """Approach velocities of all touches in one period, shape (impacts,) [m/s]."""
         return np.asarray(self.record.log["approach"])
 
-    @cached_property
-    def touches(self) -> int:
-        """Touches in one period of the motion simulated from the first touch on.
-
-        This is the number `impacts` if the orbit is `admissible`.
-        """
-        hits = simulate(self.oscillator, self.state(), periods=self.period).impacts
-        closing = (1.0 - SLACK) * self.duration
-        return int(np.count_nonzero((hits.kind == ImpactKind.IMPACT) & (hits.start - self.phase < closing)))
-
     def repeats(self, within: float = ALIKE) -> int:
         """How often the orbit runs through one of a shorter period: 1 for most.
 
@@ -244,12 +224,11 @@ class PeriodicOrbit(TouchOrbit):
         """The monodromy matrix, shape (2 n_modes, 2 n_modes)."""
         return self.tangent
 
-    def release(self) -> Release:
-        """The end of the last touch; its slack grows with the residual."""
+    def release(self) -> tuple[float, Array, Array, bool, float]:
+        """The end of the last touch; the closing one may be missed by a time that grows with the residual."""
         last, (u, v) = self.record.log[-1], self.record.states[-1, 1]
         off = 4.0 * self.residual * self.oscillator.stop.gap / self.approach[0]
-        slack = SLACK * self.oscillator.period + off
-        return Release(float(last["end"]), u, v, bool(last["rebound"] < 0.0), slack)
+        return float(last["end"]), u, v, bool(last["rebound"] < 0.0), SLACK * self.oscillator.period + off
 
 
 def peaks(orbit: PeriodicOrbit) -> list[tuple[int, float, float]]:

@@ -7,9 +7,8 @@ ends (fold) where its amplitude is smallest.  With Newton's law B is proportiona
 
 A law can have its orbits in closed form (`repeated_touch` of ``contact.touch``).
 
-The real collision starts with the ringing w left over from the last one and at another acceleration of the
-tip, which this neglects.  A second collision, simulated from w itself, gives another A at the same v.  The
-difference is the estimate of the error.
+The real collision starts with the ringing that the last one has left, and at another acceleration of the tip,
+which this neglects.
 """
 
 import math
@@ -19,7 +18,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from beam.parameters import Array, require, require_array, require_kind, require_within, shown
+from beam.parameters import require, require_array, require_within, shown
 from contact.flight.modal_flow import free_flow
 from contact.flight.variation import variation
 from contact.orbits.families.single_impact import Kick, SingleImpactFamily, SingleImpactOrbit
@@ -51,16 +50,13 @@ class KickFamily(SingleImpactFamily):
 
     collision: Callable[[float], Kick] | None = None
 
-    def kick(self, speed: float, deviations: Array | None = None) -> Kick:
-        """One collision with approach velocity `speed` [m/s], from rest or given `deviations`, (n_modes, 2).
+    def kick(self, speed: float) -> Kick:
+        """One collision with approach velocity `speed` [m/s], from rest.
 
-        From rest, where the law has it in closed form, it is the one that repeats once in m drive periods.
-        NotPeriodic is raised if it does not end within half a drive period, or its delay takes m periods.
+        Where the law has it in closed form, it is the one that repeats once in m drive periods.  NotPeriodic
+        is raised if it does not end within half a drive period, or its delay takes m periods.
         """
         require_within("speed", speed, "m/s", above=0)
-        if deviations is not None:
-            shape, unit = (self.oscillator.n_modes, 2), "m kg^0.5 and m kg^0.5/s"
-            return self._simulated(speed, require_array("deviations", deviations, unit, shape=shape))
         if self.collision is not None:
             return self.collision(speed)
         motion = self.oscillator.motion()
@@ -68,31 +64,18 @@ class KickFamily(SingleImpactFamily):
         if known is not None:
             jump, duration, leaves = known
             return Kick(speed=speed, jump=jump, duration=duration, leaves=leaves)
-        return self._simulated(speed, np.zeros((motion.size, 2)))
-
-    def _simulated(self, speed: float, w: Array) -> Kick:
-        """The collision from the deviations `w`, shape (n_modes, 2)."""
-        n, window = self.oscillator.n_modes, WINDOW * self.oscillator.period
-        p, r = self.oscillator.motion().tip(w)
-        amplitude, phase = self.oscillator.drive_at(self.oscillator.stop.gap - p, speed - r)
-        motion = self.oscillator.with_amplitude(amplitude).motion()
+        amplitude, phase = self.oscillator.drive_at(self.oscillator.stop.gap, speed)
+        motion, window = self.oscillator.with_amplitude(amplitude).motion(), WINDOW * self.oscillator.period
         vary = variation(motion, self.oscillator.tip_response())
-        (u, v), record = w.T.copy(), new_touches(MOST_TOUCHES + 1, n)
+        (u, v), record = np.zeros((2, motion.size)), new_touches(MOST_TOUCHES + 1, motion.size)
         outcome = flow_from_touch(vary, phase, u, v, window, np.empty((0, 0)), record)
         if outcome != FEWER_TOUCHES:
             raise flow_error(outcome, phase, speed, "the collision does not end within half a drive period")
         touches = int(record.marks[0]["logged"])
         last, left = record.log[touches - 1], record.states[touches - 1, 1].T
-        # the flow turned back to the touch, less what was there
-        jump = np.einsum("kij,kj->ki", free_flow(motion, -last["end"]), left) - w
+        jump = np.einsum("kij,kj->ki", free_flow(motion, -last["end"]), left)  # flown back to the touch
         leaves, duration = bool(last["rebound"] < 0.0), float(last["end"])
         return Kick(speed=speed, jump=jump, touches=touches, duration=duration, leaves=leaves)
-
-    def error(self, orbit: SingleImpactOrbit) -> float:
-        """Estimated error of the excess of an orbit: its change if the collision starts from the ringing."""
-        require_kind("orbit", orbit, SingleImpactOrbit, "a SingleImpactOrbit")
-        ringing = orbit.deviations.reshape(2, -1).T
-        return self.orbit_of(self.kick(orbit.speed, ringing)).excess - orbit.excess
 
     def _search(self, speeds: tuple[float, float]) -> tuple[list[float], float | None]:
         """Rising logarithms of velocities in a range over 2 pi f gap, and the one of least excess inside."""

@@ -43,9 +43,10 @@ from beam.parameters import Array, InvalidValue, require, require_kind, require_
 from contact.flight.modal_flow import free_flow
 from contact.flight.polynomial_root import positive_roots
 from contact.laws import NewtonRestitution
-from contact.orbits.families.family import CLOSING, Release, TouchOrbit
+from contact.orbits.families.equations import shoot
+from contact.orbits.families.family import CLOSING, TouchOrbit
 from contact.oscillator import ImpactOscillator
-from contact.sensitivity.touch_flow import flow_over_periods
+from contact.sensitivity.change import Sensitivities
 from contact.stop import Stop
 from contact.touch.newton import newton_impact
 
@@ -82,27 +83,20 @@ class SingleImpactOrbit(TouchOrbit):
 
     kick: Kick
 
-    @property
-    def after(self) -> Array:
-        """Deviations (u, u') just after the collision, referred to its first touch, shape (n_modes, 2)."""
-        return self.deviations.reshape(2, -1).T + self.kick.jump
-
-    def release(self) -> Release:
+    def release(self) -> tuple[float, Array, Array, bool, float]:
         """The end of the collision."""
         motion, duration = self.oscillator.motion(), self.kick.duration
-        u, v = np.einsum("kij,kj->ik", free_flow(motion, duration), self.after)
-        slack = CLOSING * self.duration + HEIGHT * motion.gap / self.speed
-        return Release(duration, u, v, self.kick.leaves, slack)
+        after = self.deviations.reshape(2, -1).T + self.kick.jump  # referred to the first touch
+        u, v = np.einsum("kij,kj->ik", free_flow(motion, duration), after)
+        return duration, u, v, self.kick.leaves, CLOSING * self.duration + HEIGHT * motion.gap / self.speed
 
     def monodromy(self) -> Array:
         """The monodromy matrix of the oscillator's own collision, entered as on this orbit.
 
         NotPeriodic is raised if that collision has fewer touches than the kick, or does not end.
         """
-        tangent = flow_over_periods(
-            self.oscillator, self.period, self.phase, self.deviations, self.kick.touches
-        )[1]
-        return tangent[:-2, :-2]
+        known = Sensitivities(oscillator=self.oscillator)
+        return shoot(known, self.phase, self.deviations, self.period, self.kick.touches)[0].tangent
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -15,7 +15,7 @@ only the "bracket" is known: for other maps, several impacts in the map, or two 
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Generic, TypeVar
 
 from beam.parameters import require_kind, require_whole, require_within
@@ -28,7 +28,7 @@ from contact.maps.stroboscope import StrobedMap, StroboscopicMap
 from contact.orbits.branches.continuation import first_event, fold_of_the_kicks
 from contact.orbits.families.family import Family, PeriodicOrbit
 from contact.orbits.families.single_impact import MaximalFamily
-from contact.orbits.observation.settling import Settled, orbit_near, settle
+from contact.orbits.observation.settling import orbit_near, settle
 from contact.orbits.shooting import Shooting
 
 S = TypeVar("S")
@@ -119,18 +119,18 @@ def orbit_end(
             return None
         now = kept(trial)
         if now is None and step <= final:
-            end, now = _exact_end(strobed, state, start, held, trial)
+            bracket = OrbitEnd(
+                period=start.period,
+                impacts=start.impacts,
+                excess=0.5 * (held + trial),
+                kind=BRACKET,
+                held=held,
+                lost=trial,
+                state=state,
+            )
+            end, now = _exact_end(strobed, bracket)
             if end is not None:
-                return OrbitEnd(
-                    period=start.period,
-                    impacts=start.impacts,
-                    kind=end[0],
-                    excess=end[1],
-                    held=held,
-                    lost=trial,
-                    state=state,
-                    orbit=end[2],
-                )
+                return end
         if now is None:
             lost = trial
         else:
@@ -141,46 +141,41 @@ def orbit_end(
     raise BranchEnded(time=0.0, gap=0.0, velocity=0.0, detail=words)
 
 
-End = tuple[str, float, PeriodicOrbit | None]  # kind of an end, its excess, and its orbit if that is known
-
-
-def _exact_end(
-    strobed: Any, state: Any, start: Settled[Any], held: float, lost: float
-) -> tuple[End | None, Any]:
-    """The end in the bracket; or None and the state at `lost`, if the orbit still exists there."""
-    unknown = (BRACKET, 0.5 * (held + lost), None), None
-    if isinstance(strobed, NordmarkMap) and start.impacts == 1:
-        return _map_end(MapFamily(strobed, start.period), held, lost) or unknown
+def _exact_end(strobed: Any, bracket: OrbitEnd[Any]) -> tuple[OrbitEnd[Any] | None, Any]:
+    """The end in the `bracket`; or None and the state at `lost`, if the orbit still exists there."""
+    period, impacts, lost = bracket.period, bracket.impacts, bracket.lost
+    if isinstance(strobed, NordmarkMap) and impacts == 1:
+        return _map_end(MapFamily(strobed, period), bracket)
     if not isinstance(strobed, StroboscopicMap):
-        return unknown
-    orbit = orbit_near(strobed.at(held), state, start.period, start.impacts)
+        return bracket, None
+    orbit = orbit_near(strobed.at(bracket.held), bracket.state, period, impacts)
     if orbit is None:
-        return unknown
-    family = Shooting(oscillator=orbit.oscillator, period=start.period, impacts=start.impacts)
+        return bracket, None
+    family = Shooting(oscillator=orbit.oscillator, period=period, impacts=impacts)
     try:
         event = first_event(family, orbit, lost)
         if event is not None and event.kind == "undecided":
-            return unknown
+            return bracket, None
         if event is not None and event.orbit.excess >= lost:
-            return (event.kind, event.orbit.excess, event.orbit), None
+            return replace(bracket, kind=event.kind, excess=event.orbit.excess, orbit=event.orbit), None
         below = family.at_excess(lost, orbit)
     except ContactError:
-        return unknown
-    return (None, below.strobe_state()) if below.stable else unknown
+        return bracket, None
+    return (None, below.strobe_state()) if below.stable else (bracket, None)
 
 
-def _map_end(family: MapFamily, held: float, lost: float) -> tuple[End | None, Any] | None:
-    """The end for an orbit of the Nordmark map with one impact in a period; None if it is not known."""
+def _map_end(family: MapFamily, bracket: OrbitEnd[S]) -> tuple[OrbitEnd[S] | None, Any]:
+    """The result of `_exact_end` for an orbit of the Nordmark map with one impact in a period."""
     at_fold, stable = family.fold(), family.stable_range()
-    if at_fold is None or stable is None or not stable[0] <= family.map.rho(held) <= stable[1]:
-        return None
+    if at_fold is None or stable is None or not stable[0] <= family.map.rho(bracket.held) <= stable[1]:
+        return bracket, None
     end = family.map.excess(stable[0])
-    if end < lost:
-        return None, family.orbits(lost)[-1].states[0]
+    if end < bracket.lost:
+        return None, family.orbits(bracket.lost)[-1].states[0]
     if stable[0] == at_fold.rho:
-        return ("fold", end, None), None
+        return replace(bracket, kind="fold", excess=end), None
     doubles = family.at_rho(stable[0])[-1].multipliers.real.min() < -1.0 + 1e-6
-    return ("period doubling" if doubles else "grazing", end, None), None
+    return replace(bracket, kind="period doubling" if doubles else "grazing", excess=end), None
 
 
 def fold_excess(strobed: StrobedMap[Any], period: int) -> float | None:
@@ -213,6 +208,6 @@ def fold_excess(strobed: StrobedMap[Any], period: int) -> float | None:
             kick = fold_of_the_kicks(one)
             if kick is None:
                 return None
-            family = one.with_impacts(kick.kick.touches)
+            family = replace(one, impacts=kick.kick.touches)
     at_fold = family.fold()
     return None if at_fold is None else at_fold.excess

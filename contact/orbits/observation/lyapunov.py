@@ -106,9 +106,8 @@ def orbit_exponents(strobed: DifferentiableMap[S], state: S, period: int) -> Exp
     done = 0
     while done % period or done == 0:  # a strobe in contact is never the last: m periods later it is again
         if done > MOST_STRETCHES * period:
-            raise NotPeriodic(
-                time=0.0, gap=0.0, velocity=0.0, detail="every strobe of the orbit is in contact"
-            )
+            words = "every strobe of the orbit is in contact"
+            raise NotPeriodic(time=0.0, gap=0.0, velocity=0.0, detail=words)
         found, state = strobed.jacobians(state, period - done % period)
         for step, span in found:
             matrix, done = _finite(step @ matrix), done + span
