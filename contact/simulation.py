@@ -95,9 +95,8 @@ def _run(
     begin, end, beside = start.time, start.time + length, 1e-12 * length
     valid = f"they must lie within {begin} to {end} s"
     for time in wanted[[0, -1]] if wanted.size else ():
-        require(
-            begin - beside <= time <= end + beside, f"times run from {wanted[0]} to {wanted[-1]} s; {valid}"
-        )
+        inside = begin - beside <= time <= end + beside
+        require(inside, f"times run from {wanted[0]} to {wanted[-1]} s; {valid}")
     sample_period, sample_clock = split_time(wanted, period)
     late = (sample_period > last) | ((sample_period == last) & (sample_clock > clock_end))
     sample_period[late], sample_clock[late] = last, clock_end
