@@ -11,7 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from beam.parameters import final, require_array, require_within
-from contact.flight.elementary import EPS
+
+EPS = 2.220446049250313e-16
 
 
 @final

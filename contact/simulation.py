@@ -93,9 +93,10 @@ def _run(
     wanted = require_array("times", () if times is None else times, "s", dimensions=1, words=words)
     require(not np.any(np.diff(wanted) < 0.0), f"times is {shown(wanted.tolist())} s; it must be {words}")
     begin, end, beside = start.time, start.time + length, 1e-12 * length
-    valid = f"all must lie within {begin} to {end} s"
+    valid = f"they must lie within {begin} to {end} s"
     for time in wanted[[0, -1]] if wanted.size else ():
-        require(begin - beside <= time <= end + beside, "times", f"contains {time} s; {valid}")
+        inside = begin - beside <= time <= end + beside
+        require(inside, f"times run from {wanted[0]} to {wanted[-1]} s; {valid}")
     sample_period, sample_clock = split_time(wanted, period)
     late = (sample_period > last) | ((sample_period == last) & (sample_clock > clock_end))
     sample_period[late], sample_clock[late] = last, clock_end

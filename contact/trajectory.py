@@ -87,8 +87,8 @@ class State:
             where, given = f"{name} of the state", getattr(self, name)
             array = require_array(where, given, unit, dimensions=1, shape=shape, words=words)
             object.__setattr__(self, name, array)
+            require(array.size > 0, where, f"is empty; it must be {words}")
             shape = array.shape
-        require(shape != (0,), "displacement of the state", f"is empty; it must be {words}")
         if type(self.regime) is not Regime:
             valid = is_number(self.regime) and self.regime in (0, 1, 2, 3, 4)
             require(valid, f"regime of the state is {shown(self.regime)}; it must be 0, 1, 2, 3 or 4")

@@ -41,7 +41,8 @@ comes within r of the stop.
 import math
 from typing import NamedTuple
 
-from contact.flight.modal_flow import START_U, START_V, mode_flow, tip_steady
+from contact.flight.elementary import sine_cosine
+from contact.flight.modal_flow import START_U, START_V, mode_flow
 from contact.flight.motion import DECAY, OMEGA, SQUARE, WEIGHT
 from contact.machine.compiled import kernel, part
 
@@ -129,11 +130,19 @@ def free_from(lowest, t, height, rate):
 @part
 def without_others(motion, flight, base, s):
     """Tip displacement relative to the stop without the modes above the lowest, and three derivatives."""
-    w, c, o2, phi = motion.drive, motion.modes[DECAY, 0], motion.modes[SQUARE, 0], motion.modes[WEIGHT, 0]
-    y0, y1, y2 = tip_steady(motion, base + s)
+    w, c, o2 = motion.drive, motion.modes[DECAY, 0], motion.modes[SQUARE, 0]
+    sine, cosine = sine_cosine(w * (base + s), 0.0)
+    steady = motion.tip_sine * sine + motion.tip_cosine * cosine
+    steady_rate = w * (motion.tip_sine * cosine - motion.tip_cosine * sine)
     u, v = mode_flow(motion.modes, 0, flight[START_U, 0], flight[START_V, 0], s)
     a = -c * v - o2 * u
-    return y0 + phi * u, y1 + phi * v, y2 + phi * a, -w * w * y1 - phi * (c * a + o2 * v)
+    phi = motion.modes[WEIGHT, 0]
+    return (
+        motion.level + steady + phi * u,
+        steady_rate + phi * v,
+        phi * a - w * w * steady,
+        -w * w * steady_rate - phi * (c * a + o2 * v),
+    )
 
 
 @part

@@ -221,10 +221,12 @@ class NordmarkMap:
         `rho` is one number, or one for each step, shape (count,).
         """
         out = np.empty((require_whole("count", count, "periods", low=0), 2))
-        words = "a number, or one for each step"
-        given = require_array("rho", rho, "[1]", words=words)
-        require(given.shape in ((), (count,)), "rho", f"has shape {given.shape}; it must be {words}")
-        each = np.full(count, given)
+        if isinstance(rho, list | tuple | np.ndarray):
+            words = "a number, or one for each step"
+            rho = require_array("rho", rho, "[1]", shape=(count,), words=words)
+        else:
+            rho = require_within("rho", rho, "[1]")
+        each = np.full(count, rho)
         iterate_map(*pair_of(state), self.alpha, self.gamma, self.gamma_impact, each, self.delay_term, out)
         return out
 
