@@ -63,8 +63,7 @@ def new_workspace(motion):
 def follow_flights(motion, u, v, run, last, clock_end, space, recorder, samples):
     """Follow flights from strobe to strobe, to the next touch or the end of the run; returns the status."""
     flight, whole, marks = space.flight, space.whole, recorder.marks[0]
-    strobes, counts, wanted = recorder.strobes, recorder.counts, recorder.sample_clock.size
-    status = GOING
+    strobes, counts, status = recorder.strobes, recorder.counts, GOING
     while status == GOING:
         base, at_last = run.clock, run.period == last
         end = clock_end if at_last else motion.period
@@ -78,8 +77,8 @@ def follow_flights(motion, u, v, run, last, clock_end, space, recorder, samples)
             run.evaluations += count + 1
             run.steps += 1
             until = end if outcome == FREE else base + s
-            if marks.sampled < wanted and outcome != UNRESOLVED:
-                sample_flight(motion, run, until, space.flight, recorder)
+            if outcome != UNRESOLVED and sample_due(recorder, run.period, until):
+                sample_flight(motion, run, until, space, recorder)
             if outcome == FREE and base == 0.0 and not at_last:
                 apply_flow(whole, u, v)
             else:

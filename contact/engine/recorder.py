@@ -64,13 +64,12 @@ def put_sample(recorder, u, v):
 
 
 @kernel
-def sample_flight(motion, run, until, flight, recorder):
+def sample_flight(motion, run, until, space, recorder):
     """Write states at the sample times of a flight up to `until` [s]."""
-    u, v = np.empty(motion.size), np.empty(motion.size)
     while sample_due(recorder, run.period, until):
         time = recorder.sample_clock[recorder.marks[0].sampled] - run.clock
-        propagate_flight(motion, flight, time, u, v)
-        put_sample(recorder, u, v)
+        propagate_flight(motion, space.flight, time, space.u, space.v)
+        put_sample(recorder, space.u, space.v)
 
 
 @inlined
