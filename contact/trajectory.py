@@ -87,7 +87,7 @@ class State:
             where, given = f"{name} of the state", getattr(self, name)
             array = require_array(where, given, unit, dimensions=1, shape=shape, words=words)
             object.__setattr__(self, name, array)
-            require(array.size > 0, where, f"is empty; it must be {words}")
+            require(array.size > 0, where, f"is []; it must be {words}")
             shape = array.shape
         if type(self.regime) is not Regime:
             valid = is_number(self.regime) and self.regime in (0, 1, 2, 3, 4)
