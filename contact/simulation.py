@@ -9,6 +9,7 @@ import numpy as np
 
 from beam.parameters import (
     InvalidType,
+    InvalidValue,
     require,
     require_array,
     require_kind,
@@ -91,7 +92,8 @@ def _run(
         last, clock_end = (x.item() for x in split_time(start.time + length, period))
     words = "a rising array"
     wanted = require_array("times", () if times is None else times, "s", dimensions=1, words=words)
-    require(not np.any(np.diff(wanted) < 0.0), f"times is {shown(wanted.tolist())} s; it must be {words}")
+    if np.any(np.diff(wanted) < 0.0):  # the sentence is slow to make
+        raise InvalidValue(f"times is {shown(wanted.tolist())} s; it must be {words}")
     begin, end, beside = start.time, start.time + length, 1e-12 * length
     valid = f"they must lie within {begin} to {end} s"
     for time in wanted[[0, -1]] if wanted.size else ():

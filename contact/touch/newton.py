@@ -24,10 +24,17 @@ series is that of ``contact.touch.time_series``.
 import math
 
 from contact.flight.elementary import EPS
-from contact.flight.modal_flow import hold, mode_acceleration, push_on, tip_rounding, tip_state, tip_sum
+from contact.flight.modal_flow import (
+    hold,
+    jerk_bound,
+    mode_acceleration,
+    push_on,
+    tip_rounding,
+    tip_state,
+    tip_sum,
+)
 from contact.flight.motion import DECAY, LOAD, SQUARE, WEIGHT
 from contact.flight.polynomial_root import first_polynomial_root
-from contact.flight.tip_search import jerk_bound
 from contact.flight.variation import NUMBER0, all_tip_changes
 from contact.machine.compiled import kernel, part
 from contact.touch import time_series
