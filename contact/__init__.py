@@ -27,8 +27,8 @@ Words
 
 The files: the problem and its answer
     ``drive``           base motion, `HarmonicDrive`
-    ``laws``            contact laws: `NewtonRestitution` (at once), `DelayedRestitution` (after a delay; one
-                        mode), `LinearContact`, `HertzContact`, `HuntCrossley` (forces)
+    ``laws``            contact laws: `NewtonRestitution` (at once), `LinearContact`, `HertzContact`,
+                        `HuntCrossley` (forces); `DelayedRestitution` (one mode) stands in ``touch``
     ``stop``            `Stop`: a gap and a law
     ``oscillator``      `ImpactOscillator`: a ``beam.ModalModel``, a stop and a drive; the equation of motion
     ``trajectory``      `State`, `Impacts`, `Trajectory`

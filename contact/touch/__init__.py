@@ -1,5 +1,10 @@
 """In touch with the stop: one file a law, chosen by the table `TOUCHES`.
 
+`newton`, `delayed`, `linear`, `hertz`   the laws
+`passage`                                a touch from strike to release, under any law, and its record
+`series`, `time_series`                  power series of a contact: what force laws share; in time
+`tangent_series`                         tangents through a touch
+
 How to add a law, say N = k d^3
     1. Its file here, ``cubic.py``, with two parts.  The first is a frozen dataclass of its parameters, a
        ``contact.laws.ContactLaw``: the fields, their `units`, and a `code` that no other law has.  The second
