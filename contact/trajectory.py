@@ -13,7 +13,16 @@ from functools import cached_property
 
 import numpy as np
 
-from beam.parameters import final, is_number, require, require_array, require_whole, require_within, shown
+from beam.parameters import (
+    InvalidValue,
+    final,
+    is_number,
+    require,
+    require_array,
+    require_whole,
+    require_within,
+    shown,
+)
 from contact.drive import split_time
 from contact.flight.modal_flow import steady_motion
 from contact.flight.motion import Motion
@@ -90,8 +99,8 @@ class State:
             require(array.size > 0, where, f"is []; it must be {words}")
             shape = array.shape
         if type(self.regime) is not Regime:
-            valid = is_number(self.regime) and self.regime in (0, 1, 2, 3, 4)
-            require(valid, f"regime of the state is {shown(self.regime)}; it must be 0, 1, 2, 3 or 4")
+            if not (is_number(self.regime) and self.regime in (0, 1, 2, 3, 4)):
+                raise InvalidValue(f"regime of the state is {shown(self.regime)}; it must be 0, 1, 2, 3 or 4")
             object.__setattr__(self, "regime", Regime(self.regime))
         for name, unit in (("time", "s"), ("wait", "s"), ("rebound", "m/s")):
             value = getattr(self, name)

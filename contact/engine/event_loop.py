@@ -16,7 +16,15 @@ import numpy as np
 from contact import touch
 from contact.engine.recorder import put_sample, sample_due, sample_flight, strobe
 from contact.flight.crossing import CROSSES, FREE, UNRESOLVED, searched_flight
-from contact.flight.modal_flow import apply_flow, flow_over, load_state, new_flight, propagate_flight
+from contact.flight.modal_flow import (
+    LOOK,
+    apply_flow,
+    clear_faint,
+    flow_over,
+    load_state,
+    new_flight,
+    propagate_flight,
+)
 from contact.flight.sampled_crossing import first_sampled_crossing
 from contact.machine.compiled import borrowed, held, kernel, part
 from contact.touch.passage import AT_END, RELEASED, TOO_MANY, add_loss, follower, is_full, meet
@@ -81,6 +89,8 @@ def follow_flights(motion, u, v, run, last, clock_end, space, recorder, samples)
                 sample_flight(motion, run, until, space, recorder)
             if outcome == FREE and base == 0.0 and not at_last:
                 apply_flow(whole, u, v)
+                if run.period % LOOK == 0:
+                    clear_faint(u, v)
             else:
                 propagate_flight(motion, flight, s, u, v)
             run.clock = until

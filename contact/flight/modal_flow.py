@@ -37,9 +37,10 @@ START_U, START_V, U, V, HEIGHT, RATE, ACCELERATION, JERK_BOUND, ABOVE = range(9)
 displacement, of two derivatives and of the bound of the third; the sum of the amplitudes of all higher modes.
 """
 
-FAINT = 1e-150
-"""A deviation below this is set to zero: its square is a denormal number, with which arithmetic is slow.
-Otherwise rounding would keep a lightly damped mode at the smallest denormal number for ever."""
+FAINT, LOOK = 1e-150, 256
+"""A deviation below the first is set to zero: its square is a denormal number, with which arithmetic is slow.
+Otherwise rounding would keep a lightly damped mode at the smallest denormal number for ever.  Every so many
+drive periods of a motion without touches are looked at."""
 
 
 @kernel
@@ -151,11 +152,17 @@ def flow_over(motion, time):
 def apply_flow(flows, u, v):
     """Advance all deviations by `flows`, in place."""
     for k in range(u.size):
-        uk, vk = u[k], v[k]
-        un = flows[k, 0] * uk + flows[k, 1] * vk + flows[k, 4]
-        vn = flows[k, 2] * uk + flows[k, 3] * vk + flows[k, 5]
-        seen = abs(un) + abs(vn) > FAINT
-        u[k], v[k] = un if seen else 0.0, vn if seen else 0.0
+        uk = u[k]
+        u[k] = flows[k, 0] * uk + flows[k, 1] * v[k] + flows[k, 4]
+        v[k] = flows[k, 2] * uk + flows[k, 3] * v[k] + flows[k, 5]
+
+
+@kernel
+def clear_faint(u, v):
+    """Set deviations that have faded to zero (`FAINT`)."""
+    for k in range(u.size):
+        if abs(u[k]) + abs(v[k]) < FAINT:
+            u[k], v[k] = 0.0, 0.0
 
 
 @kernel

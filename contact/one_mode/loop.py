@@ -37,7 +37,7 @@ import math
 
 from contact.engine.event_loop import DONE, advance
 from contact.engine.recorder import strobes_only
-from contact.flight.modal_flow import FAINT
+from contact.flight.modal_flow import FAINT, LOOK
 from contact.flight.motion import COSINE, SINE, with_drive
 from contact.machine.compiled import borrowed, inlined, kernel
 from contact.one_mode.one_impact import crossing_guess, is_proved, one_impact, peak_derivatives
@@ -128,38 +128,41 @@ def one_mode_periods(table, system, factors, u, v, runs, points, counts):
     first = run.period
     un, vn = weight * u[0], weight * v[0]
     outside = run.regime == OUTSIDE and run.contact_order == 0
-    for i in range(counts.size):
-        if factors.size > 0 and factors[i] != factor:
-            change, factor = factors[i] - factor, factors[i]
-            local = table_at(table, system.motion, factor)
-            un, vn = un - change * driven_u, vn - change * driven_v
-            mean_u, mean_v = mean_u + change * driven_u, mean_v + change * driven_v
-        impacts = 0
-        s = local.steady
-        rho = math.sqrt(un * un + n.mode_time_squared * vn * vn)
-        height = n.gap - n.detuning * rho
-        p, q = through(n.peak_flow, un, vn)
-        compared = outside and rho < s.largest_deviation
-        if compared and is_free(n, s, s.overshoot + p + height, q, height):
-            un, vn = through(n.period_flow, un, vn) if rho > FAINT else (0.0, 0.0)
-        else:
-            impacts = -1
-            if compared:
-                impacts, ui, vi = decided_period(local, rho, p, q, un, vn)
-            if impacts < 0:
-                left += 1
-                u[0], v[0], run.period = un / weight, vn / weight, first + i
-                motion = system.motion if factor == 1.0 else with_drive(system.motion, factor)
-                here = strobes_only(points[i : i + 1], counts[i : i + 1])
-                status = advance(motion, u, v, runs, first + i + 1, 0.0, here, None)
-                if status != DONE:
-                    return status, left
-                impacts, ui, vi = counts[i], weight * u[0], weight * v[0]
-                outside = run.regime == OUTSIDE and run.contact_order == 0
-            un, vn = ui, vi
-        points[i, 0] = un + mean_u
-        points[i, 1] = (vn + mean_v) * per_omega
-        counts[i] = impacts
+    for start in range(0, counts.size, LOOK):
+        if abs(un) + abs(vn) < FAINT:
+            un, vn = 0.0, 0.0
+        for i in range(start, min(start + LOOK, counts.size)):
+            if factors.size > 0 and factors[i] != factor:
+                change, factor = factors[i] - factor, factors[i]
+                local = table_at(table, system.motion, factor)
+                un, vn = un - change * driven_u, vn - change * driven_v
+                mean_u, mean_v = mean_u + change * driven_u, mean_v + change * driven_v
+            impacts = 0
+            s = local.steady
+            rho = math.sqrt(un * un + n.mode_time_squared * vn * vn)
+            height = n.gap - n.detuning * rho
+            p, q = through(n.peak_flow, un, vn)
+            compared = outside and rho < s.largest_deviation
+            if compared and is_free(n, s, s.overshoot + p + height, q, height):
+                un, vn = through(n.period_flow, un, vn)
+            else:
+                impacts = -1
+                if compared:
+                    impacts, ui, vi = decided_period(local, rho, p, q, un, vn)
+                if impacts < 0:
+                    left += 1
+                    u[0], v[0], run.period = un / weight, vn / weight, first + i
+                    motion = system.motion if factor == 1.0 else with_drive(system.motion, factor)
+                    here = strobes_only(points[i : i + 1], counts[i : i + 1])
+                    status = advance(motion, u, v, runs, first + i + 1, 0.0, here, None)
+                    if status != DONE:
+                        return status, left
+                    impacts, ui, vi = counts[i], weight * u[0], weight * v[0]
+                    outside = run.regime == OUTSIDE and run.contact_order == 0
+                un, vn = ui, vi
+            points[i, 0] = un + mean_u
+            points[i, 1] = (vn + mean_v) * per_omega
+            counts[i] = impacts
     change = 1.0 - factor
     un, vn = un - change * driven_u, vn - change * driven_v
     u[0], v[0], run.period = un / weight, vn / weight, first + counts.size
