@@ -32,11 +32,8 @@ from contact.oscillator import ImpactOscillator
 class Regime(IntEnum):
     """How the stop acts on the tip.
 
-    OUTSIDE: off the wall.
-    CONTACT: pushed by the wall.
-    INSIDE: behind the wall's rest position, without force.
-    SUSTAINED: held on the wall by the motion.
-    WAITING: on the wall, waiting for a delayed rebound.
+    OUTSIDE: off the wall.  CONTACT: pushed by the wall.  INSIDE: behind the wall's rest position, without
+    force.  SUSTAINED: held on the wall by the motion.  WAITING: on the wall, until a delayed rebound.
     """
 
     OUTSIDE = 0
@@ -49,10 +46,8 @@ class Regime(IntEnum):
 class ImpactKind(IntEnum):
     """Kind of a touch of the tip.
 
-    IMPACT: a touch that acts on the motion.
-    GRAZE: a touch without effect, within rounding.
-    STAY: a stay on the wall after accumulated impacts.
-    UNDER_WAY: a contact that had begun before the run.
+    IMPACT: a touch that acts on the motion.  GRAZE: a touch without effect, within rounding.  STAY: a stay on
+    the wall after accumulated impacts.  UNDER_WAY: a contact that had begun before the run.
     """
 
     IMPACT = 0

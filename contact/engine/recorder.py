@@ -15,8 +15,6 @@ from contact.oscillator import ImpactOscillator
 from contact.touch.passage import MARKS, TOUCH, new_touches, put_state
 from contact.trajectory import STAY, Impacts, Run, State, Trajectory, steady_states
 
-FIRST_TOUCHES = 64  # capacity of a new log, which grows by itself
-
 
 class Recorder(NamedTuple):
     """The arrays into which a run writes: those of ``touch.passage.Touches``, and more."""
@@ -92,7 +90,7 @@ def recorder_for(run: Run, n_modes: int) -> Recorder:
     """An empty recorder for the strobes and times of `run`."""
     strobes, times = run.last - run.first, run.times.size
     return Recorder(
-        *new_touches(FIRST_TOUCHES, n_modes),
+        *new_touches(64, n_modes),  # the log grows by itself
         strobes=np.empty((strobes, 2 * n_modes)),
         counts=np.zeros(strobes, dtype=np.int64),
         sample_period=np.asarray(run.sample_period, dtype=np.int64),

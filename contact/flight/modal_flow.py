@@ -38,9 +38,8 @@ displacement, of two derivatives and of the bound of the third; the sum of the a
 """
 
 FAINT, LOOK = 1e-150, 256
-"""A deviation below the first is set to zero: its square is a denormal number, with which arithmetic is slow.
-Otherwise rounding would keep a lightly damped mode at the smallest denormal number for ever.  Every so many
-drive periods of a motion without touches are looked at."""
+"""A deviation below the first is set to zero, every so many drive periods: its square is a denormal number,
+with which arithmetic is slow, and rounding would keep a lightly damped mode at the smallest one for ever."""
 
 
 @kernel

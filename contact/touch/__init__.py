@@ -60,6 +60,7 @@ therefore links the files of the table into one compiled function for each name.
 
 import inspect
 from collections.abc import Callable
+from functools import partial
 from types import ModuleType, SimpleNamespace
 from typing import Any, TypeVar
 
@@ -73,7 +74,7 @@ Function = TypeVar("Function", bound=Callable[..., object])
 def offered(file: ModuleType) -> SimpleNamespace:
     """What the file of a law offers, and for the rest what most laws share."""
     law = SimpleNamespace(**vars(series) | vars(time_series) | vars(file))
-    law.acceleration = getattr(file, "acceleration", series.accelerated_by(law.force))
+    law.acceleration = getattr(file, "acceleration", partial(series.acceleration, law.force))
     return law
 
 

@@ -116,8 +116,7 @@ memory0, memory1: what the law keeps of the touch under way for itself, negative
 """
 
 RELEASED, AT_END, TOO_MANY, NO_STEP = range(4)
-"""How a contact is left: by its release; at the end of the time; with too many steps; with a step of no
-length."""
+"""How a contact is left: released; at the end of the time; after too many steps; at a step of no length."""
 
 CLOSEST = 4.0 * EPS  # part of a drive period next to the end in which no step is made
 

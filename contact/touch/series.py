@@ -73,15 +73,10 @@ def inside(motion, vary, now, length, tangent):
     """No more effect: the tangents have gone up to this time with the series."""
 
 
-def accelerated_by(force):
-    """`acceleration` under the `force` of a law."""
-
-    def acceleration(motion, free, q, rate):
-        """The acceleration `free` of the modes less that by the push of the stop."""
-        depth = motion.tip(q) - motion.gap
-        return free - motion.phi * force(motion, depth, motion.tip(rate)) if depth > 0.0 else free
-
-    return acceleration
+def acceleration(force, motion, free, q, rate):
+    """The acceleration `free` of the modes less that by the push of the stop, under the `force` of a law."""
+    depth = motion.tip(q) - motion.gap
+    return free - motion.phi * force(motion, depth, motion.tip(rate)) if depth > 0.0 else free
 
 
 def repeated_touch(motion, speed, period):
