@@ -106,16 +106,24 @@ def follow_flights(motion, u, v, run, last, clock_end, space, recorder, samples)
     return status
 
 
+@kernel
+def sample_touch(motion, run, s, until, space, recorder):
+    """Write states at the sample times of a contact step up to `s`, at the clock `until` [s]."""
+    while sample_due(recorder, run.period, until):
+        time = recorder.sample_clock[recorder.marks[0].sampled] - run.clock
+        at = touch.series_variable(motion, time, s, space.series)
+        touch.state(motion, run, at, space.series, space.u, space.v)
+        put_sample(recorder, space.u, space.v)
+
+
 def recorded(law: SimpleNamespace) -> Callable[..., None]:
     """The `Watch` of the event loop: samples are taken, and the work done on the stop is the loss."""
-    series_variable, state, work = law.series_variable, law.state, law.work
+    work = law.work
 
     def watch(motion, run, u, v, s, until, series, watcher):
         space, recorder = watcher
-        while sample_due(recorder, run.period, until):
-            time = recorder.sample_clock[recorder.marks[0].sampled] - run.clock
-            state(motion, run, series_variable(motion, time, s, series), series, space.u, space.v)
-            put_sample(recorder, space.u, space.v)
+        if sample_due(recorder, run.period, until):
+            sample_touch(motion, run, s, until, space, recorder)
         if recorder.log.size > 0:
             add_loss(recorder, work(motion, run, s, series))
 

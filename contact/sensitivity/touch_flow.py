@@ -8,9 +8,6 @@ where the strobe map has its square root.  Amplitude and phase of the drive are 
 series, and through instantaneous impacts by saltation matrices.
 """
 
-from collections.abc import Callable
-from types import SimpleNamespace
-
 import numpy as np
 
 from contact import touch
@@ -33,21 +30,16 @@ MOST_STEPS = 800
 contact of the letter's beam."""
 
 
-def with_tangents(law: SimpleNamespace) -> Callable[..., None]:
-    """The `Watch` of this flow: the tangents are carried through each step of a contact by its series."""
-    slopes = law.slopes
-
-    def watch(motion, run, u, v, s, until, series, watcher):
-        vary, tangent, space = watcher
-        if tangent.shape[1] > 0:
-            terms = slopes(motion, run, series, space.weights)
-            if terms > 0:
-                tangent_step(vary, space, terms, s, tangent, (run.clock, u, v))
-
-    return part(watch)
+@kernel
+def carry_tangents(motion, run, u, v, s, until, series, watcher):
+    """The `Watch` of this flow: the tangents go through each step of a contact by its series."""
+    vary, tangent, space = watcher
+    terms = touch.slopes(motion, run, series, space.weights) if tangent.shape[1] > 0 else 0
+    if terms > 0:
+        tangent_step(vary, space, terms, s, tangent, (run.clock, u, v))
 
 
-follow = follower(with_tangents)
+follow = follower(lambda law: carry_tangents)
 
 
 @part

@@ -104,7 +104,7 @@ def _compiled(name: str) -> Callable[..., Any]:
     return by_law({code: getattr(law, name) for code, law in TOUCHES.items()})
 
 
-strike, force, stiffness, saltation, inside, series_size = map(
-    _compiled, ("strike", "force", "stiffness", "saltation", "inside", "series_size")
+strike, force, stiffness, saltation, inside, slopes, state, series_size, series_variable = map(
+    _compiled, "strike force stiffness saltation inside slopes state series_size series_variable".split()
 )
-"""The functions of motion.law that are needed outside the steps of a touch (``contact.touch.passage``)."""
+"""The functions of motion.law that are needed beside the steps of a touch (``contact.touch.passage``)."""
