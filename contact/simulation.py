@@ -81,11 +81,11 @@ def _run(
     period = oscillator.period
     whole = 0 if periods is None else require_whole("periods", periods, "drive periods")
     length = whole * period if whole else require_within("duration", duration, "s", above=0)
-    require(
-        length / period * 2 * oscillator.n_modes <= MOST_STORED,
-        f"duration is {length:g} s, {length / period:g} drive periods with {oscillator.n_modes} modes; "
-        f"the strobes kept must stay below {MOST_STORED:g} numbers, so run it in pieces",
-    )
+    if length / period * 2 * oscillator.n_modes > MOST_STORED:
+        raise InvalidValue(
+            f"duration is {length:g} s, {length / period:g} drive periods with {oscillator.n_modes} modes; "
+            f"the strobes kept must stay below {MOST_STORED:g} numbers, so run it in pieces"
+        )
     first, clock = (x.item() for x in split_time(start.time, period))
     last, clock_end = first + whole, clock
     if not whole:
@@ -95,10 +95,9 @@ def _run(
     if np.any(np.diff(wanted) < 0.0):  # the sentence is slow to make
         raise InvalidValue(f"times is {shown(wanted.tolist())} s; it must be {words}")
     begin, end, beside = start.time, start.time + length, 1e-12 * length
-    valid = f"they must lie within {begin} to {end} s"
-    for time in wanted[[0, -1]] if wanted.size else ():
-        inside = begin - beside <= time <= end + beside
-        require(inside, f"times run from {wanted[0]} to {wanted[-1]} s; {valid}")
+    if wanted.size and (wanted[0] < begin - beside or wanted[-1] > end + beside):
+        words = f"they must lie within {begin} to {end} s"
+        raise InvalidValue(f"times run from {wanted[0]} to {wanted[-1]} s; {words}")
     sample_period, sample_clock = split_time(wanted, period)
     late = (sample_period > last) | ((sample_period == last) & (sample_clock > clock_end))
     sample_period[late], sample_clock[late] = last, clock_end

@@ -67,12 +67,12 @@ class ContinuableFamily:
         (rows, offset), size, n = self._drive, x.size, x.size - 1
         speed, start = self.oscillator.unit_speed * math.exp(x[-1]), x[:-1] * self._sizes
         drive, grazing = rows @ np.append(start, speed) + offset, self.oscillator.grazing_amplitude()
-        driven, phase = driven_at(self.oscillator, drive)
-        orbit, miss, flow = shoot(Sensitivities(oscillator=driven), phase, start, self.period, self.impacts)
+        here, at = driven_at(self.oscillator, drive)
+        orbit, miss, flow = shoot(Sensitivities(oscillator=here), at, start, self.period, self.impacts, speed)
         stretch = np.append(self._sizes, speed)
         closing = flow @ np.vstack([np.eye(n, size), rows]) - np.eye(n, size)
         return Iterate(
-            replace(orbit, speed=speed),
+            orbit,
             miss / self._sizes,
             closing * stretch / self._sizes[:, None],
             drive @ rows * stretch / (orbit.amplitude * grazing),

@@ -64,13 +64,14 @@ def driven_at(oscillator: ImpactOscillator, drive: Array) -> tuple[ImpactOscilla
 
 
 def shoot(
-    changes: Sensitivities, phase: float, start: Array, period: int, impacts: int
+    changes: Sensitivities, phase: float, start: Array, period: int, impacts: int, speed: float | None = None
 ) -> tuple[PeriodicOrbit, Array, Array]:
     """The motion over m = `period` drive periods from a touch, as an orbit that need not close.
 
-    It starts at drive time `phase` [s] with deviations `start`, shape (2 n_modes,).  Returned are also (u, v)
-    at the end less `start`, and the derivatives of (u, v) at the end with respect to z and P parameters, the
-    `changes`, shape (2 n_modes, 2 n_modes + 2 + P).
+    It starts at drive time `phase` [s] with deviations `start`, shape (2 n_modes,); `speed` is its approach
+    speed [m/s], if it is known more exactly.  Returned are also (u, v) at the end less `start`, and the
+    derivatives of (u, v) at the end with respect to z and P parameters, the `changes`, shape (2 n_modes,
+    2 n_modes + 2 + P).
 
     NotPeriodic is raised if the motion has fewer touches than `impacts` or a contact does not end, and
     ContactTooStiff if a contact needs more than ``touch_flow.MOST_STEPS``.
@@ -82,13 +83,14 @@ def shoot(
     if outcome != FLOWN:
         words = f"an orbit of period {period} with {impacts} touches was lost"
         raise flow_error(outcome, phase, float(record.log[0]["approach"]), words)
-    rates = deviation_rates(oscillator.motion(), u, v)
-    flow[:n, n + 2 :] += np.multiply.outer(rates, period * changes.period)
+    if changes.changes:
+        rates = deviation_rates(oscillator.motion(), u, v)
+        flow[:n, n + 2 :] += np.multiply.outer(rates, period * changes.period)
     orbit = PeriodicOrbit(
         oscillator=oscillator,
         period=period,
         excess=oscillator.excess,
-        speed=float(record.log[0]["approach"]),
+        speed=float(record.log[0]["approach"]) if speed is None else speed,
         phase=phase,
         displacement=u,
         velocity=v,
