@@ -205,9 +205,9 @@ class ImpactOscillator:
     def drive_at(self, reach: float, rate: float) -> tuple[float, float]:
         """Base amplitude [m] and drive time [s] at which the steady tip motion has displacement `reach` [m]
         and velocity `rate` [m/s]."""
-        w = self.driven.angular_frequency
+        w, height = self.driven.angular_frequency, reach - (self.mean_height + self.stop.gap)
         # x = x_0 + Z Im(H e^{i w t}), x' = Z w Re(H e^{i w t}), so Z e^{i w t} = C + i S with
-        phasor = (rate / w + 1j * (reach - (self.mean_height + self.stop.gap))) / self.tip_response()
+        phasor = np.complex128(complex(rate / w, height)) / self.tip_response()
         return abs(phasor), float(np.angle(phasor) % (2.0 * np.pi)) / w
 
     def grazing_amplitude(self) -> float:
