@@ -17,7 +17,7 @@ from contact.trajectory import STAY, Impacts, Run, State, Trajectory, steady_sta
 
 
 class Recorder(NamedTuple):
-    """The arrays into which a run writes: those of ``touch.passage.Touches``, and more."""
+    """The arrays into which a run writes; the first three make a ``touch.passage.Touches``."""
 
     marks: np.ndarray
     log: np.ndarray

@@ -56,7 +56,7 @@ class Exponents:
 def _finite(matrix: Array) -> Array:
     """The matrix; NoDerivative if it has left the range of numbers."""
     if not np.all(np.isfinite(matrix)):
-        raise NoDerivative(time=0.0, gap=0.0, velocity=0.0, detail="those along the orbit are too large")
+        raise NoDerivative(time=0.0, gap=0.0, velocity=0.0, detail="the derivatives are not finite")
     return matrix
 
 
