@@ -31,7 +31,7 @@ FILES = {
     "touch/* sensitivity/*": "contact_laws|delayed|derivatives|shooting|time_stepping",
     "engine/*": "sampling|simulation|bouncing|digits|modes",
     "collision virtual_motion": "collision",
-    "orbits/*/*": "shooting|families|derivatives|delayed|settling|clouds|path",
+    "orbits/*/* orbits/shooting": "shooting|families|derivatives|delayed|settling|clouds|path",
     "maps/*": "nordmark|nonlinear|sampling|lyapunov|clouds|derivatives",
     "one_mode/*": "single_mode|sampling|clouds",
 }
