@@ -124,6 +124,7 @@ def with_tip_mass(model: ModalModel, mass: float) -> ModalModel:
         static_compliance=points["tip"].static_compliance,
         tip_mass=float(mass),
         points=points,
+        dimensionless=model.dimensionless,
     )
 
 

@@ -97,6 +97,8 @@ class ModalModel:
         Compliance [m/N] and mass [kg] of the tip, see `Point`. With another `phi` give both anew.
     points : mapping of str to Point, optional
         Further places by name. "tip", made of `phi` and the two numbers above, is always among them.
+    dimensionless : bool
+        Whether lengths, masses and times are in units of your own, so that no size in metres is suspicious.
 
     Warns
     -----
@@ -111,6 +113,7 @@ class ModalModel:
     static_compliance: float | None = None
     tip_mass: float | None = None
     points: Mapping[str, Point] = field(default_factory=dict)
+    dimensionless: bool = False
 
     def __post_init__(self) -> None:
         rows = {name: _row(name, getattr(self, name), unit) for name, unit in UNITS.items()}
@@ -119,6 +122,7 @@ class ModalModel:
             least = rows[name].min()
             require(least >= 0.0, name, f"holds {least} {UNITS[name]}; no entry may be negative")
         vars(self).update(rows)
+        require_kind("dimensionless", self.dimensionless, bool, "True or False")
         points = dict(require_kind("points", self.points, Mapping, "a mapping of names to Point"))
         for name, point in points.items():
             require_kind(f"points[{name!r}]", point, Point, "a Point")
@@ -247,7 +251,13 @@ class ModalModel:
         if measured_on_it:
             rates[np.argmax(np.abs(phi))] = self.decay_rate[k]
         omega = np.sqrt(np.maximum(found, 0.0))
-        return ModalModel(omega=omega, decay_rate=rates, phi=phi, participation=mass * shapes[n])
+        return ModalModel(
+            omega=omega,
+            decay_rate=rates,
+            phi=phi,
+            participation=mass * shapes[n],
+            dimensionless=self.dimensionless,
+        )
 
 
 def _check_statics(owner: Point | ModalModel, **units: str) -> None:

@@ -58,8 +58,22 @@ class SuspiciousValue(UserWarning):
     """A parameter that is valid but can hardly be meant; the message says why."""
 
 
+_said: set[str] = set()
+
+
 def suspect(sentence: str) -> None:
-    """Warn of a suspicious value, at the line outside `beam` and `contact` that gave it."""
+    """Warn of a suspicious value, at the line outside `beam` and `contact` that gave it.
+
+    Sentences that differ in their numbers only are of one kind. A sweep would repeat them, so that a process
+    says each kind once. All are given if the filter of warnings is "always", "all" or "error".
+    """
+    filters = (f for f in warnings.filters if issubclass(SuspiciousValue, f[2]))
+    action = next((f[0] for f in filters if f[1] is None or f[1].match(sentence)), "default")
+    if action in ("default", "module", "once"):
+        kind = re.sub(r"\d[\d.]*(e[-+]\d+)?", "", sentence)
+        if kind in _said:
+            return
+        _said.add(kind)
     level, frame = 2, sys._getframe(1)
     while frame.f_back and str(frame.f_globals.get("__name__")).partition(".")[0] in ("beam", "contact"):
         level, frame = level + 1, frame.f_back

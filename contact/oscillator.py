@@ -37,6 +37,8 @@ from contact.flight.motion import Motion, motion_of, with_drive
 from contact.laws import NewtonRestitution
 from contact.stop import Stop
 
+GREATEST_GAP = 1.0  # gap beyond which a warning is given [m]; lengths in units of the gap give just this
+
 GREATEST_AMPLITUDE = 0.1
 """Amplitude of a base motion beyond which a warning is given [m]: the stroke of large vibration exciters is
 50 mm, and the letter's drive moved by 1.5 mm.  Exactly 1 asks for the response per unit amplitude."""
@@ -68,8 +70,8 @@ class ImpactOscillator:
     load : ndarray, shape (n_modes,), optional
         Constant modal load [N kg^-0.5].
 
-    A drive amplitude above `GREATEST_AMPLITUDE` and ten gaps, or a drive slower than `SLOWEST_DRIVE`, brings
-    a SuspiciousValue warning.
+    A gap above `GREATEST_GAP`, or a drive amplitude above `GREATEST_AMPLITUDE` and ten gaps, brings a
+    SuspiciousValue warning unless the model is `dimensionless`; so does a drive slower than `SLOWEST_DRIVE`.
     """
 
     model: ModalModel
@@ -92,6 +94,8 @@ class ImpactOscillator:
             words = f"{omega.size} finite modal loads"
             load = require_array("load", self.load, "N kg^-0.5", shape=omega.shape, words=words)
             object.__setattr__(self, "load", load)
+        if not self.model.dimensionless:
+            self._suspect_metres()
         if self.drive is None:
             return
         require(self.stop.gap > 0, "gap", f"is {self.stop.gap} m; for a driven spring it must be above zero")
@@ -100,13 +104,18 @@ class ImpactOscillator:
         require(not np.any(resonant), "frequency of the drive", f"is {words}")
         self._suspect(self.drive)
 
+    def _suspect_metres(self) -> None:
+        """Warn of a gap or an amplitude that no leaf spring and no exciter has."""
+        gap, amplitude = self.stop.gap, 0.0 if self.drive is None else self.drive.amplitude
+        remedy = "millimetres may have been meant; in units of your own give ModalModel(dimensionless=True)"
+        if gap > GREATEST_GAP:
+            suspect(f"gap is {gap:g} m; above {GREATEST_GAP:g} m no leaf spring moves that far, and {remedy}")
+        if amplitude > max(GREATEST_AMPLITUDE, 10.0 * gap) and amplitude != 1.0:
+            given = f"amplitude of the drive is {amplitude:g} m with a gap of {gap:g} m"
+            suspect(f"{given}; exciters move by some centimetres at most, and {remedy}")
+
     def _suspect(self, drive: HarmonicDrive) -> None:
-        """Warn of an amplitude or a frequency that no exciter of this spring has."""
-        if drive.amplitude > max(GREATEST_AMPLITUDE, 10.0 * self.stop.gap) and drive.amplitude != 1.0:
-            suspect(
-                f"amplitude of the drive is {drive.amplitude:g} m with a gap of {self.stop.gap:g} m; "
-                "exciters move by some centimetres at most, and millimetres may have been meant"
-            )
+        """Warn of a frequency that no exciter of this spring has."""
         highest = float(self.model.omega.max())
         if 0.0 < HIGHEST_DRIVE * highest < drive.angular_frequency:
             suspect(

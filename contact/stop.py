@@ -2,10 +2,8 @@
 
 from dataclasses import dataclass
 
-from beam.parameters import final, require_kind, require_within, suspect
+from beam.parameters import final, require_kind, require_within
 from contact.laws import ContactLaw
-
-GREATEST_GAP = 1.0  # gap beyond which a warning is given [m]; lengths in units of the gap give just this
 
 
 @final
@@ -19,8 +17,6 @@ class Stop:
         Distance from the tip at rest to the wall, zero or more [m]; a driven spring needs more than zero.
     law : ContactLaw
         What happens when the tip reaches it.
-
-    A gap above `GREATEST_GAP` brings a SuspiciousValue warning.
     """
 
     gap: float
@@ -28,9 +24,4 @@ class Stop:
 
     def __post_init__(self) -> None:
         require_within("gap", self.gap, "m", low=0)
-        if self.gap > GREATEST_GAP:
-            suspect(
-                f"gap is {self.gap:g} m; above {GREATEST_GAP:g} m no leaf spring moves that far, and "
-                "millimetres may have been meant"
-            )
         require_kind("law of the stop", self.law, ContactLaw, "a contact law such as NewtonRestitution")

@@ -6,11 +6,12 @@ from beam.parameters import InvalidValue
 from contact.engine import event_loop as loop
 from contact.engine.recorder import grown, recorder_for, trajectory_of
 from contact.errors import Chatter, ContactError, ContactTooStiff, UnresolvedCrossing
+from contact.flight.elementary import EPS
 from contact.flight.modal_flow import steady_motion, tip_rounding, tip_state
-from contact.flight.motion import Motion
+from contact.flight.motion import LOAD, Motion
 from contact.flight.sampled_crossing import Samples
 from contact.oscillator import ImpactOscillator
-from contact.touch import TOUCHES, force
+from contact.touch import TOUCHES, force, strike
 from contact.touch.passage import STATE, open_touch
 from contact.trajectory import OUTSIDE, SUSTAINED, WAITING, ImpactKind, Regime, Run, State, Trajectory
 
@@ -25,6 +26,27 @@ FAILURES: dict[int, tuple[type[ContactError], str]] = {
 """The error for each failure status of `advance`, and its detail."""
 
 
+def first_motion(motion: Motion, clock: float, u: np.ndarray, v: np.ndarray) -> tuple[int, bool]:
+    """How a tip on the stop begins to move if the stop does not act on it.
+
+    Returns the order of the first derivative of the tip displacement that is not zero within rounding, 1 for
+    its velocity, 2 and 3, and whether it leads away from the stop; 4 if no such derivative is known.
+    """
+    w, square, decay, load = motion.drive, motion.omega**2, motion.decay, motion.row(LOAD)
+    drive = np.sin(w * clock) * motion.tip_sine + np.cos(w * clock) * motion.tip_cosine
+    turned = np.cos(w * clock) * motion.tip_sine - np.sin(w * clock) * motion.tip_cosine
+    size = abs(motion.tip_sine) + abs(motion.tip_cosine)
+    low, high, low_size, high_size = u, v, np.abs(u), np.abs(v)  # modes: two successive derivatives, bounds
+    for order, steady in enumerate((w * turned, -(w**2) * drive, -(w**3) * turned), start=1):
+        value = steady + motion.tip(high)
+        if abs(value) > 4.0 * EPS * (w**order * size + motion.most_at_tip(high_size)):
+            return order, bool(value < 0.0)
+        low, high = high, load - decay * high - square * low
+        low_size, high_size = high_size, np.abs(load) + decay * high_size + square * low_size
+        load = np.zeros_like(load)  # it is constant
+    return 4, False
+
+
 def start_of(
     motion: Motion,
     state: State,
@@ -36,7 +58,8 @@ def start_of(
     """Deviations (u, v) of `state` from the steady motion, and the `STATE` of a run that starts there.
 
     `steady` is the steady displacement and velocity at the start, if known, each of shape (n_modes,).
-    ValueError is raised if the state has another number of modes, or lies behind the stop of an impact law,
+    A state OUTSIDE whose tip lies on the stop within rounding finds its regime by the motion of the tip, see
+    ``contact.simulation.simulate``.  ValueError is raised if the state has another number of modes, or lies behind the stop of an impact law,
     or if its regime is unknown to the law or does not fit the position of the tip.
     """
     modes, known = state.displacement.size, TOUCHES[motion.law].REGIMES
@@ -66,6 +89,14 @@ def start_of(
         pushes = Regime.INSIDE not in known or force(motion, height, velocity) > 0.0
         regime = Regime.CONTACT if pushes else Regime.INSIDE
     runs[0] = (regime, 0, period, 0, 0, clock, state.wait, state.rebound, -1.0, -1.0)
+    if regime == OUTSIDE and height >= -rounding:
+        order, leaves = first_motion(motion, clock, u, v)
+        if leaves:
+            runs[0]["contact_order"] = order
+        elif order > 1:  # at order 1 the first flight meets the stop at once
+            regime = SUSTAINED if SUSTAINED in known else strike(motion, runs[0], u, v, 0.0)[0]
+            runs[0]["regime"] = regime
+            runs[0]["memory0"] = -1.0
     return u, v, runs
 
 
@@ -102,8 +133,9 @@ def exact_trajectory(oscillator: ImpactOscillator, run: Run, samples: Samples | 
     u, v, runs = start_of(motion, run.start, run.first, run.clock)
     recorder = recorder_for(run, n)
     if runs[0]["regime"] != OUTSIDE:
-        kind = ImpactKind.STAY if runs[0]["regime"] == SUSTAINED else ImpactKind.UNDER_WAY
-        open_touch(recorder, run.first, run.clock, np.nan, int(kind), u, v)
+        stays = runs[0]["regime"] == SUSTAINED
+        kind, approach = (ImpactKind.STAY, 0.0) if stays else (ImpactKind.UNDER_WAY, np.nan)
+        open_touch(recorder, run.first, run.clock, approach, int(kind), u, v)
         recorder.marks["impacts"] = 0  # it did not begin in this period
     while True:
         status = loop.advance(motion, u, v, runs, run.last, run.clock_end, recorder, samples)

@@ -41,6 +41,8 @@ FAINT, LOOK = 1e-150, 256
 """A deviation below the first is set to zero, every so many drive periods: its square is a denormal number,
 with which arithmetic is slow, and rounding would keep a lightly damped mode at the smallest one for ever."""
 
+BRIEF = 1e-12  # part of a drive period in which a load gives modes at rest a speed to compare with
+
 
 @kernel
 def new_flight(motion):
@@ -272,10 +274,14 @@ def jerk_bound(motion, u, v):
 
 @kernel
 def speed_scale(motion, u, v):
-    """The square root of twice the modal energy, of the deviation and of the steady motion [m kg^0.5/s]."""
-    energy, square = motion.steady_energy, motion.modes[SQUARE]
+    """The square root of twice the modal energy, of the deviation and of the steady motion [m kg^0.5/s].
+
+    It is above zero if anything moves: a load counts by the speed that it gives in a moment, see `BRIEF`.
+    """
+    energy, square, load = motion.steady_energy, motion.modes[SQUARE], motion.modes[LOAD]
+    moment = BRIEF * motion.period
     for k in range(u.size):
-        energy += v[k] * v[k] + square[k] * u[k] * u[k]
+        energy += v[k] * v[k] + square[k] * u[k] * u[k] + (moment * load[k]) ** 2
     return math.sqrt(energy)
 
 

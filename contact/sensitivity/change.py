@@ -78,7 +78,7 @@ class Change:
 
         model, stop, drive = oscillator.model, oscillator.stop, oscillator.driven
         if self.model is not None:
-            model = ModalModel(**moved(model, self.model, ARRAYS))
+            model = ModalModel(**moved(model, self.model, ARRAYS), dimensionless=model.dimensionless)
         law = stop.law.moved(*(step * np.array(self.law)))
         stop = replace(stop, **moved(stop, self, ["gap"]), law=law)
         drive = replace(drive, **moved(drive, self, ["frequency", "amplitude"]))

@@ -26,7 +26,7 @@ import math
 import numpy as np
 
 from contact.flight.elementary import EPS, sine_cosine
-from contact.flight.modal_flow import speed_scale, tip_state, tip_sum
+from contact.flight.modal_flow import speed_scale, tip_rounding, tip_state, tip_sum
 from contact.flight.motion import SQUARE
 from contact.flight.polynomial_root import first_polynomial_root, horner, polynomial_root
 from contact.machine.compiled import kernel, part
@@ -215,7 +215,9 @@ def step(motion, run, u, v, limit, series):
     if run.memory1 < 0.0:
         run.memory1 = speed_scale(motion, u, v)
     if run.memory0 < 0.0:
-        run.memory0 = math.sqrt(max(0.0, tip_state(motion, run.clock, u, v)[0]))
+        # in a contact that begins at rest no sigma would lead away from r = 0: d is known to rounding only
+        depth = tip_state(motion, run.clock, u, v)[0]
+        run.memory0 = math.sqrt(max(tip_rounding(motion, u, v), depth))
     r[0] = run.memory0
     fill(motion, run.clock, u, v, series)
     s = longest_step(motion, run.memory1, series)
