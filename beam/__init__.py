@@ -51,7 +51,7 @@ if TYPE_CHECKING:
     )
     from .modal_model import ModalModel, Point, single_mode
     from .modes import Modes, ShapesAlong, natural_modes
-    from .parameters import InvalidType, InvalidValue, Refusal, SuspiciousValue
+    from .parameters import InvalidType, InvalidValue, Refusal, SuspiciousValue, suspect
     from .reduction import reduce
     from .section import Layer, StripSection
     from .spring import LeafSpring, Readout, Support, Tip

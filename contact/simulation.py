@@ -143,8 +143,13 @@ def simulate(
     Trajectory
         Strobed states, states at `times`, impacts and the final state.
 
-    ValueError is raised for a run of no length, times out of order or range, or a start behind the wall or at
-    rest just on it; TypeError for a method that does not know the law; StepTooLarge for a step beyond its
+    A tip that lies on the stop at the start, within rounding, touches it at once if it moves towards it, and
+    leaves if it moves or is pulled away.  At rest and pressed, or without any force, it stays: under Newton's
+    law as a STAY of approach 0, under a force law as a contact UNDER_WAY that begins at depth 0, and under
+    DelayedRestitution for the delay of its lowest speed, UNDER_WAY too.
+
+    ValueError is raised for a run of no length, times out of order or range, or a start behind the wall of an
+    impact law; TypeError for a method that does not know the law; StepTooLarge for a step beyond its
     limit of stability; and UnresolvedCrossing, Chatter or ContactTooStiff where the motion could not be
     followed.  A driven spring at rest whose drive has no amplitude brings a SuspiciousValue warning.
     """

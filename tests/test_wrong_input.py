@@ -65,7 +65,7 @@ RESULTS = {
 """What entries return; nobody has to make one by hand."""
 
 NO_ENTRIES = {
-    "beam": "Damping InvalidType InvalidValue Refusal Support SuspiciousValue "
+    "beam": "Damping InvalidType InvalidValue Refusal Support SuspiciousValue suspect "
     "solid_spring write_frames write_mode_motion write_modes",  # these: tests/beam/test_paraview_files.py
     "contact": "BranchEnded Chatter ContactError ContactLaw ContactTooStiff Diverged ImpactKind NoDerivative "
     "NotPeriodic Regime StepTooLarge StrobedMap UnresolvedCrossing",
@@ -176,11 +176,13 @@ def warned(make: Callable[[], object]) -> list[str]:
     return [str(warning.message) for warning in found]
 
 
+MODE = beam.single_mode(free_period=40.8e-3, decay_rate=3.56)
+LAW = contact.NewtonRestitution(local_restitution=0.1)
+
+
 def driven(**numbers: float) -> object:
     drive = contact.HarmonicDrive(**dict(frequency=22.2, amplitude=1e-3) | numbers)
-    stop = contact.Stop(gap=0.0107, law=contact.NewtonRestitution(local_restitution=0.1))
-    mode = beam.single_mode(free_period=40.8e-3, decay_rate=3.56)
-    return contact.ImpactOscillator(model=mode, stop=stop, drive=drive)
+    return contact.ImpactOscillator(model=MODE, stop=contact.Stop(gap=0.0107, law=LAW), drive=drive)
 
 
 @pytest.mark.parametrize(
@@ -196,6 +198,7 @@ def driven(**numbers: float) -> object:
         ),
         (lambda: beam.single_mode(free_period=0.04, decay_rate=500.0), "it hardly swings"),
         (lambda: driven(amplitude=1.5), "amplitude of the drive is 1.5 m"),
+        (lambda: contact.ImpactOscillator(model=MODE, stop=contact.Stop(gap=3.0, law=LAW)), "gap is 3 m"),
         (lambda: driven(frequency=0.0222), "frequency of the drive is 0.0222 Hz"),
         (lambda: contact.simulate(driven(amplitude=0.0), periods=1), "starts at rest: nothing moves"),
     ],
@@ -207,3 +210,20 @@ def test_a_suspicious_value_is_taken_with_a_warning_that_says_why(
     sentences = warned(make)
     assert any(words in sentence for sentence in sentences), sentences
     assert all(sentence.isprintable() and len(sentence) < 250 for sentence in sentences)
+
+
+def test_each_kind_of_warning_is_given_once_and_not_without_metres() -> None:
+    parameters._said.clear()
+    own = dataclasses.replace(MODE.truncated(1), dimensionless=True)
+    with warnings.catch_warnings(record=True) as found:
+        warnings.simplefilter("default")
+        for gap in (2.0, 2.5, 3e4):
+            stop = contact.Stop(gap=gap, law=LAW)
+            contact.ImpactOscillator(model=MODE, stop=stop)
+            contact.ImpactOscillator(model=own.truncated(1), stop=stop)
+        driven(amplitude=5.0)
+    assert [str(one.message).split(" is ")[0] for one in found] == ["gap", "amplitude of the drive"]
+    assert all("dimensionless=True" in str(one.message) for one in found)
+    drive = contact.HarmonicDrive(frequency=22.2, amplitude=5.0)
+    stop = contact.Stop(gap=0.1, law=LAW)
+    assert not warned(lambda: contact.ImpactOscillator(model=own, stop=stop, drive=drive))

@@ -26,7 +26,7 @@ import math
 import numpy as np
 
 from contact.flight.elementary import EPS, sine_cosine
-from contact.flight.modal_flow import speed_scale, tip_rounding, tip_state, tip_sum
+from contact.flight.modal_flow import BRIEF, speed_scale, tip_rounding, tip_state, tip_sum
 from contact.flight.motion import SQUARE
 from contact.flight.polynomial_root import first_polynomial_root, horner, polynomial_root
 from contact.machine.compiled import kernel, part
@@ -215,9 +215,10 @@ def step(motion, run, u, v, limit, series):
     if run.memory1 < 0.0:
         run.memory1 = speed_scale(motion, u, v)
     if run.memory0 < 0.0:
-        # in a contact that begins at rest no sigma would lead away from r = 0: d is known to rounding only
+        # at rest no sigma leads away from r = 0, but d is known to rounding only, or to less at u = 0
+        moment = EPS * BRIEF * motion.period * run.memory1 * math.sqrt(motion.inverse_mass)
         depth = tip_state(motion, run.clock, u, v)[0]
-        run.memory0 = math.sqrt(max(tip_rounding(motion, u, v), depth))
+        run.memory0 = math.sqrt(max(tip_rounding(motion, u, v), depth, moment))
     r[0] = run.memory0
     fill(motion, run.clock, u, v, series)
     s = longest_step(motion, run.memory1, series)

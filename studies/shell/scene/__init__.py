@@ -14,11 +14,10 @@ brings a `SuspiciousValue` warning. Reading a scene solves no eigenvalue problem
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
-from beam import Backbone, ModalModel, Refusal, SuspiciousValue
+from beam import Backbone, ModalModel, Refusal, suspect
 from contact import (
     Band,
     ContactError,
@@ -83,9 +82,10 @@ def read_scene(name: str | Path = "letter", overrides: Iterable[str] = ()) -> Sc
     scene = scene_from_text(text, name=str(path), overrides=overrides, folder=path.parent)
     check(scene)
     scene = with_first_mode(scene)
-    single_mode_of(scene)
+    law = contact_law_of(scene)
+    ImpactOscillator(model=single_mode_of(scene), stop=Stop(gap=scene.stop.gap_m, law=law))
     for sentence in doubts(scene):
-        warnings.warn(sentence, SuspiciousValue, stacklevel=2)
+        suspect(sentence)
     return scene
 
 

@@ -34,7 +34,7 @@ def shown(value: object) -> str:
 
 
 Value = float | int | str | tuple[float, ...]
-T = TypeVar("T", float, int, str, tuple[float, ...])
+T = TypeVar("T", float, int, bool, str, tuple[float, ...])
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,8 @@ class Key:
         if self.choices:
             return "one of " + ", ".join(f'"{word}"' for word in self.choices)
         listed = "a list of finite numbers" + (", at least one" if self.default else "")
-        kinds = {float: "a finite number", int: "a whole number", str: "one line of text in quotes"}
+        kinds = {float: "a finite number", int: "a whole number", bool: "true or false"}
+        kinds[str] = "one line of text in quotes"
         words = kinds.get(type(self.default), listed)
         if self.low > -math.inf:
             words += f", at least {self.low:g}"
@@ -69,7 +70,9 @@ class Key:
     def checked(self, name: str, value: object) -> Value:
         """The value as a plain one of the key's type; SceneError with key, value, unit and what is valid."""
         found: Value | None = None
-        if isinstance(self.default, str):
+        if isinstance(self.default, bool):
+            found = value if isinstance(value, bool) else None
+        elif isinstance(self.default, str):
             if isinstance(value, str) and value.isprintable() and value in (self.choices or (value,)):
                 found = value
         elif isinstance(self.default, tuple):

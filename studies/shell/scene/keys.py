@@ -127,6 +127,7 @@ class ModalDataKeys:
     static_compliance_m_per_n: float = key(
         0.0, "m/N", "static compliance at the tip; 0: of these modes", low=0.0
     )
+    dimensionless: bool = key(False, "", "whether lengths, masses and times are in units of your own")
     kappa: float = key(0.0, "1", "relative rise of the free frequency, times (kappa_length/A)^2; 0: linear")
     kappa_length_m: float = key(1.0, "m", "the length that kappa counts amplitudes in")
 

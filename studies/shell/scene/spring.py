@@ -186,6 +186,7 @@ def model_of(scene: Scene) -> ModalModel:
         static_compliance=data.static_compliance_m_per_n or None,
         tip_mass=data.tip_mass_kg or None,
         points={READOUT: beam.Point(row=tip_values)},
+        dimensionless=data.dimensionless,
     )
 
 
@@ -223,7 +224,8 @@ def single_mode_of(scene: Scene) -> ModalModel:
         given, valid = shown(scene.single_mode.free_period_s), f"at least {SHORTEST:g} (unit s)"
         raise SceneError(f"{keys['free_period']} must be {valid}, or -1 for that of mode 1, not {given}")
     model = scene.make(beam.single_mode, keys)
-    return dataclasses.replace(model, points={READOUT: model.points["tip"]})
+    own = scene.modal_data.dimensionless
+    return dataclasses.replace(model, points={READOUT: model.points["tip"]}, dimensionless=own)
 
 
 def first_mode(scene: Scene) -> tuple[float, float]:

@@ -1,0 +1,80 @@
+"""A tip that lies on the stop when the run begins: closed forms, and an outside solver."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from beam import ModalModel
+from contact import HertzContact, ImpactOscillator, LinearContact, NewtonRestitution, State, Stop, simulate
+
+STIFF = 200.0
+LAWS = {
+    "linear": (LinearContact(stiffness=STIFF, damping=0.0), 1.0),
+    "hertz": (HertzContact(stiffness=STIFF), 1.5),
+}
+
+
+def on_stop(law, gap, load, seed=None):
+    """A spring of three random modes, or a mass, under a load, its tip at rest on the stop."""
+    rng, n = np.random.default_rng(seed), 1 if seed is None else 3
+    omega = np.zeros(1) if seed is None else np.sort(rng.uniform(1.0, 8.0, n))
+    phi = np.ones(1) if seed is None else rng.uniform(0.5, 1.5, n) * rng.choice([-1, 1], n)
+    model = ModalModel(omega=omega, decay_rate=0.1 * omega, phi=phi, participation=0.0 * phi)
+    q, v = (np.zeros(n) if seed is None else rng.uniform(-0.3, 0.3, n) for _ in range(2))
+    q, v = q - phi * (phi @ q - gap) / (phi @ phi), v - phi * (phi @ v) / (phi @ phi)
+    free = phi @ (-0.1 * omega * v - omega**2 * q)
+    load = phi * (load - free) / (phi @ phi)  # the tip has this acceleration
+    oscillator = ImpactOscillator(model=model, stop=Stop(gap=gap, law=law), load=load)
+    return oscillator, State(displacement=q, velocity=v)
+
+
+def solved(oscillator, state, power):
+    """(q, q') after 0.5 s by DOP853, the force being STIFF d^power."""
+    model, n = oscillator.model, oscillator.n_modes
+
+    def rates(t, y):
+        depth = max(0.0, model.phi @ y[:n] - oscillator.stop.gap)
+        pull = oscillator.load - model.decay_rate * y[n:] - model.omega**2 * y[:n]
+        return np.concatenate([y[n:], pull - model.phi * STIFF * depth**power])
+
+    start = np.concatenate([state.displacement, state.velocity])
+    return solve_ivp(rates, (0.0, 0.5), start, method="DOP853", rtol=1e-12, atol=1e-15, max_step=2e-3).y[
+        :, -1
+    ]
+
+
+@pytest.mark.parametrize("gap", [0.0, 0.3])
+@pytest.mark.parametrize("pull", [2.0, -2.0])
+@pytest.mark.parametrize("law", LAWS)
+def test_a_start_at_rest_agrees_with_an_outside_solver(law, pull, gap):
+    for seed in (None, 1, 2, 3):
+        oscillator, state = on_stop(LAWS[law][0], gap, pull, seed)
+        run = simulate(oscillator, state, duration=0.5)
+        found = np.concatenate([run.end.displacement, run.end.velocity])
+        np.testing.assert_allclose(found, solved(oscillator, state, LAWS[law][1]), atol=1e-9)
+        assert (run.impacts.kind[:1].tolist() == [3]) == (pull > 0)
+
+
+@pytest.mark.parametrize("gap", [0.0, 0.3])
+@pytest.mark.parametrize("seed", [None, 1, 2, 3])
+def test_newton_stays_if_pressed_and_leaves_if_pulled(seed, gap):
+    law = NewtonRestitution(local_restitution=0.5)
+    oscillator, state = on_stop(law, gap, 2.0, seed)
+    run = simulate(oscillator, state, duration=1e-3)
+    assert run.end.regime == 3 and run.impacts.kind.tolist() == [2] and run.impacts.approach.tolist() == [0.0]
+    assert oscillator.tip(run.end.displacement) == pytest.approx(gap, abs=1e-15)
+    oscillator, state = on_stop(law, gap, -2.0, seed)
+    run = simulate(oscillator, state, duration=1e-3)
+    assert run.end.regime == 0 and len(run.impacts) == 0
+    assert oscillator.tip(run.end.displacement) - gap == pytest.approx(-1e-6, rel=0.05)
+
+
+def test_a_start_that_moves_towards_the_stop_is_an_impact_and_one_without_force_a_stay():
+    oscillator, state = on_stop(NewtonRestitution(local_restitution=0.5), 0.3, 0.0)
+    run = simulate(oscillator, state, duration=1.0)
+    assert run.end.regime == 3 and math.isclose(run.end.displacement[0], 0.3, abs_tol=1e-15)
+    run = simulate(oscillator, State(displacement=[0.3], velocity=[1.0]), duration=1.0)
+    assert run.impacts.start.tolist() == [0.0] and run.impacts.approach.tolist() == [1.0]
+    assert run.end.displacement[0] == pytest.approx(-0.2, abs=1e-15)
