@@ -7,6 +7,7 @@ and values that make it wrong.  Besides, every plain number of every right call 
 
 from __future__ import annotations
 
+import dataclasses
 import re
 import warnings
 from collections.abc import Callable
@@ -23,6 +24,7 @@ from cases_of_calls import USUAL
 
 import beam
 import contact
+from beam import parameters
 from beam.parameters import Refusal, SuspiciousValue, shown
 from contact import integrators, orbits
 
