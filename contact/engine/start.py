@@ -59,7 +59,9 @@ def start_of(
 
     `steady` is the steady displacement and velocity at the start, if known, each of shape (n_modes,).
     A state OUTSIDE whose tip lies on the stop within rounding finds its regime by the motion of the tip, see
-    ``contact.simulation.simulate``.  ValueError is raised if the state has another number of modes, or lies behind the stop of an impact law,
+    ``contact.simulation.simulate``.
+
+    ValueError is raised if the state has another number of modes, or lies behind the stop of an impact law,
     or if its regime is unknown to the law or does not fit the position of the tip.
     """
     modes, known = state.displacement.size, TOUCHES[motion.law].REGIMES
