@@ -64,8 +64,12 @@ _said: set[str] = set()
 def suspect(sentence: str) -> None:
     """Warn of a suspicious value, at the line outside `beam` and `contact` that gave it.
 
-    Sentences that differ in their numbers only are of one kind. A sweep would repeat them, so that a process
-    says each kind once. All are given if the filter of warnings is "always", "all" or "error".
+    Parameters
+    ----------
+    sentence : str
+        Names field, value and unit, and says why. Sentences that differ in their numbers only are of one
+        kind, and a process gives each kind once. All are given if the user's filter of warnings is "always",
+        "all" or "error".
     """
     filters = (f for f in warnings.filters if issubclass(SuspiciousValue, f[2]))
     action = next((f[0] for f in filters if f[1] is None or f[1].match(sentence)), "default")
