@@ -68,6 +68,9 @@ class Collision:
         Amplitude of the free motion of the higher modes at the tip before the collision [m].
     energy_to_higher_modes, energy_lost : float
         Gain of the free motion of all modes but mode 1, and loss in the contact itself [J].
+    impulse, peak_force : float
+        Impulse of the stop over all touches [N s], and the largest contact force [N]; the force is NaN under
+        a law that acts at once.
     forced_by_ringing, returns : bool
         The virtual motion alone would not have touched; the outgoing virtual motion reaches the gap.
     """
@@ -88,6 +91,8 @@ class Collision:
     ringing: float
     energy_to_higher_modes: float
     energy_lost: float
+    impulse: float
+    peak_force: float
     forced_by_ringing: bool
     returns: bool
 
@@ -116,14 +121,14 @@ def collisions(trajectory: Trajectory, *, unfinished: str = "refuse") -> list[Co
     require(not np.delete(motion.row(LOAD), k).any(), words)
     require(unfinished in ("refuse", "drop"), f'unfinished is {unfinished!r}; it must be "refuse" or "drop"')
     rows = np.flatnonzero(impacts.kind != ImpactKind.GRAZE).tolist()
-    found: list[Collision] = []
+    stays, found = impacts.kind == ImpactKind.STAY, list[Collision]()
     while rows:
         first = last = rows.pop(0)
         outgoing, minimum = _outgoing(single, k, impacts, last)
-        while rows and -_length(motion, impacts, rows[0], last) < minimum:
+        while rows and (stays[rows[0]] or -_length(motion, impacts, rows[0], last) < minimum):
             last = rows.pop(0)
             outgoing, minimum = _outgoing(single, k, impacts, last)
-        under_way = math.isnan(impacts.approach[first])  # when the run began
+        under_way = stays[first] or math.isnan(impacts.approach[first])  # when the run began
         if not impacts.end[last] + minimum <= run.end.time:
             if unfinished == "drop" or under_way:
                 break
@@ -183,6 +188,7 @@ def _measure(motion: Motion, k: int, impacts: Impacts, rows: slice, outgoing: Vi
         s_out = peak if outgoing.at(peak)[0] <= rounding else outgoing.crossing(peak, 1.0)
         restitution, delay = -outgoing.at(s_out)[1] / speed, s_out - back
 
+    force = float(np.fmax.reduce(impacts.peak_force[rows]))
     gained = _higher_energy(motion, k, u_out, v_out) - _higher_energy(motion, k, u_free, v_free)
     amplitudes = np.hypot(u_in, v_in * motion.row(INVERSE_OMEGA))  # of zero frequency, the displacement
     amplitudes[k] = 0.0
@@ -203,6 +209,8 @@ def _measure(motion: Motion, k: int, impacts: Impacts, rows: slice, outgoing: Vi
         ringing=motion.most_at_tip(amplitudes),
         energy_to_higher_modes=gained,
         energy_lost=float(np.sum(impacts.loss[rows])),
+        impulse=float(np.sum(impacts.impulse[rows])),
+        peak_force=math.nan if np.isnan(force) else force,  # one object, so that equal collisions are equal
         forced_by_ringing=forced,
         returns=returns,
     )

@@ -47,7 +47,8 @@ class ImpactKind(IntEnum):
     """Kind of a touch of the tip.
 
     IMPACT: a touch that acts on the motion.  GRAZE: a touch without effect, within rounding.  STAY: a stay on
-    the wall after accumulated impacts.  UNDER_WAY: a contact that had begun before the run.
+    the wall after accumulated impacts, from the end of their last hop on.  UNDER_WAY: a contact that had
+    begun before the run.
     """
 
     IMPACT = 0
@@ -141,9 +142,18 @@ class Impacts:
         law, the second NaN for a contact that had not ended.
     approach, rebound : ndarray, shape (n_impacts,)
         Tip velocity at both, positive towards the wall [m/s]; an approach before the run is NaN.
-    loss, kind : ndarray, shape (n_impacts,)
-        Energy lost in the contact itself [J], NaN for a force contact that had not ended, and values of
-        `ImpactKind`.  The loss of a stay is the energy of the hops that it begins with.
+    loss : ndarray, shape (n_impacts,)
+        Energy that the tip has given to the stop [J].  A contact that has ended has lost it; in one still
+        closed it includes what the stop stores.  That of a stay is the energy of the hops before it.
+    impulse : ndarray, shape (n_impacts,)
+        Integral of the contact force over the touch, to the end of the run if it is still closed [N s].  A
+        stay includes the impulse of the hops before it.
+    peak_force : ndarray, shape (n_impacts,)
+        Largest contact force in the touch, so far if it is still closed [N].  NaN if the law acts at once,
+        without a force: an impact under Newton's law or a delayed rebound.  A stay has the largest force that
+        holds the tip.  A method with a time step gives the largest force at its grid points.
+    kind : ndarray of int, shape (n_impacts,)
+        Values of `ImpactKind`.
     deviations_start, deviations_end : ndarray, shape (n_impacts, 2, n_modes)
         Deviations (u, v) just before the touch and just after the release.
     """
@@ -155,6 +165,8 @@ class Impacts:
     approach: np.ndarray
     rebound: np.ndarray
     loss: np.ndarray
+    impulse: np.ndarray
+    peak_force: np.ndarray
     kind: np.ndarray
     deviations_start: np.ndarray
     deviations_end: np.ndarray
@@ -166,12 +178,15 @@ class Impacts:
     def of_states(
         oscillator: ImpactOscillator, *, times: np.ndarray, states: np.ndarray, **numbers: np.ndarray
     ) -> Impacts:
-        """Touches that another program has found, with approach, rebound, loss and kind as `numbers`.
+        """Touches that another program has found; `numbers` are approach to kind of the list above.
+
+        Without impulse or peak force these are NaN.
 
         `times` [s] has the shape (2, n_impacts), and the modal states (q, q') have (2, n_impacts, 2,
         n_modes): first the touches, then the releases.
         """
-        given, valid = ", ".join(sorted(numbers)), "approach, kind, loss, rebound"
+        unknown = dict.fromkeys(("impulse", "peak_force"), np.full(times.shape[1], np.nan))
+        given, valid = ", ".join(sorted(numbers.keys() - unknown.keys())), "approach, kind, loss, rebound"
         require(given == valid, f"numbers has {given or 'no entries'}; it must have {valid}")
         period, clock = split_time(times[0], oscillator.period)
         end_clock, motion = times[1] - period * oscillator.period, oscillator.motion()
@@ -183,7 +198,7 @@ class Impacts:
             end_clock=end_clock,
             deviations_start=before,
             deviations_end=after,
-            **numbers,
+            **(unknown | numbers),
         )
 
     @cached_property
@@ -195,6 +210,11 @@ class Impacts:
     def end(self) -> np.ndarray:
         """Times of the release [s], shape (n_impacts,)."""
         return self.period * self.oscillator.period + self.end_clock
+
+    @cached_property
+    def duration(self) -> np.ndarray:
+        """Lengths of the touches [s], shape (n_impacts,): 0 under Newton's law, NaN for one still closed."""
+        return self.end_clock - self.clock
 
     @cached_property
     def _steady(self) -> tuple[tuple[np.ndarray, np.ndarray], ...]:

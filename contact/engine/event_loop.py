@@ -27,9 +27,9 @@ from contact.flight.modal_flow import (
 )
 from contact.flight.sampled_crossing import first_sampled_crossing
 from contact.machine.compiled import borrowed, held, kernel, part
-from contact.touch.passage import AT_END, RELEASED, TOO_MANY, add_loss, follower, is_full, meet
+from contact.touch.passage import AT_END, RELEASED, TOO_MANY, add_exchange, follower, is_full, meet, put_state
 from contact.touch.series import Series, new_series
-from contact.trajectory import OUTSIDE
+from contact.trajectory import OUTSIDE, STAY
 
 DONE, FAILED_CROSSING, FAILED_CHATTER, FAILED_STEPS, FAILED_SERIES, LOG_FULL = range(6)
 GOING, CROSSED, GRAZED = range(-3, 0)
@@ -116,16 +116,31 @@ def sample_touch(motion, run, s, until, space, recorder):
         put_sample(recorder, space.u, space.v)
 
 
+@part
+def rest_of_hops(run, until, recorder):
+    """How far a step up to the clock `until` [s] lies in the hops before a stay, whose row is open [s]."""
+    row = recorder.log[recorder.marks[0].logged - 1]
+    if row.kind != STAY or row.period < run.period or (row.period == run.period and row.start <= run.clock):
+        return 0.0
+    return until - run.clock if row.period > run.period else min(row.start, until) - run.clock
+
+
 def recorded(law: SimpleNamespace) -> Callable[..., None]:
-    """The `Watch` of the event loop: samples are taken, and the work done on the stop is the loss."""
-    work = law.work
+    """The `Watch` of the event loop: samples are taken, what the tip gives to the stop is written."""
+    exchange, state = law.exchange, law.state
 
     def watch(motion, run, u, v, s, until, series, watcher):
         space, recorder = watcher
         if sample_due(recorder, run.period, until):
             sample_touch(motion, run, s, until, space, recorder)
         if recorder.log.size > 0:
-            add_loss(recorder, work(motion, run, s, series))
+            last, hops = recorder.marks[0].logged - 1, rest_of_hops(run, until, recorder)
+            if hops > 0.0:
+                state(motion, run, hops, series, space.u, space.v)
+                put_state(recorder.log_state[last], 0, space.u, space.v)
+            known = recorder.log[last].peak_force
+            work, impulse, force = exchange(motion, run, (hops, s), series, known)
+            add_exchange(recorder, work, impulse, force)
 
     return part(watch)
 

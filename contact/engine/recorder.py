@@ -12,6 +12,7 @@ from contact.errors import ContactError
 from contact.flight.modal_flow import propagate_flight, steady_motion
 from contact.machine.compiled import inlined, kernel, part
 from contact.oscillator import ImpactOscillator
+from contact.touch import TOUCHES
 from contact.touch.passage import MARKS, TOUCH, new_touches, put_state
 from contact.trajectory import STAY, Impacts, Run, State, Trajectory, steady_states
 
@@ -128,7 +129,8 @@ def trajectory_of(
         place = {"time": end.time, "gap": motion.gap - float(height), "velocity": float(velocity)}
         raise ContactError(**place, detail="the state at one of the times was not written down")
     logged, passed = int(marks["logged"]), run.last - run.first
-    log, touches = recorder.log[:logged], recorder.log_state[:logged].reshape(logged, 2, 2, n).copy()
+    log, touches = recorder.log[:logged].copy(), recorder.log_state[:logged].reshape(logged, 2, 2, n).copy()
+    TOUCHES[motion.law].improve(motion, log, touches)
     rows = np.concatenate((recorder.strobes, recorder.samples))
     q, v = rows[:, :n].copy(), rows[:, n:].copy()
     if deviations:
@@ -137,6 +139,11 @@ def trajectory_of(
     else:
         touches -= steady_states(motion, np.fmod(np.column_stack((log["start"], log["end"])), period))
     q[passed:][left], v[passed:][left] = end.displacement, end.velocity
+    # a stay whose hops the release or the end of the run cuts short
+    opened, last = np.isnan(log["end"]), np.where(np.isnan(log["end"]), run.last, log["end_period"])
+    until = (last - log["period"]) * period + np.where(opened, run.clock_end, log["end"])
+    late = (log["kind"] == STAY) & (log["start"] > until)
+    log["start"][late] = until[late]
     # a method with a step counts from one strobe throughout
     number = log["period"] + np.floor(log["start"] / period).astype(np.int64)
     impacts = Impacts(
@@ -146,7 +153,9 @@ def trajectory_of(
         end_clock=(log["end_period"] - number) * period + log["end"],
         approach=log["approach"].copy(),
         rebound=log["rebound"].copy(),
-        loss=np.where(np.isnan(log["end"]) & (log["kind"] != STAY), np.nan, log["loss"]),
+        loss=log["loss"].copy(),
+        impulse=log["impulse"].copy(),
+        peak_force=log["peak_force"].copy(),
         kind=log["kind"].copy(),
         deviations_start=touches[:, 0],
         deviations_end=touches[:, 1],

@@ -24,7 +24,7 @@ from contact.engine.recorder import Recorder, put_sample, sample_due
 from contact.flight.modal_flow import push_on, tip_sum
 from contact.flight.motion import DECAY, SQUARE, Motion
 from contact.machine.compiled import inlined, kernel, part
-from contact.touch.passage import add_loss, close_touch, is_full, open_touch
+from contact.touch.passage import add_exchange, close_touch, is_full, open_touch
 from contact.trajectory import IMPACT
 
 DONE, FULL, TOO_LARGE, DIVERGED = 0, 1, 2, 3
@@ -180,9 +180,9 @@ def make_contact_writer(interpolate: Interpolate) -> WriteContact:
 
     @inlined
     def write(grid, method, span, depth, report):
-        """`report`: penetration at the start of the step, the energy that the stop has taken [J], and whether
-        the tip has touched it within the step."""
-        before, loss, touched = report
+        """`report`: penetration at the start of the step; energy [J] and impulse [N s] that the stop has
+        taken, and the largest force [N]; and whether the tip has touched it within the step."""
+        before, given, touched = report
         recorder, (start, h) = grid.recorder, span
         touching = recorder.marks[0].touching == 1
         opens = not touching and (depth > 0.0 or touched)
@@ -197,7 +197,7 @@ def make_contact_writer(interpolate: Interpolate) -> WriteContact:
         if opens:
             open_touch(recorder, grid.first, start + x * h, rate, IMPACT, grid.q_at, grid.v_at)
         if touching or opens:
-            add_loss(recorder, loss)
+            add_exchange(recorder, given[0], given[1], given[2])
         if closes:
             if opens:
                 x = 1.0
@@ -224,11 +224,12 @@ _write_on_cubic = make_contact_writer(cubic_interpolation)
 
 @inlined
 def _write_contact(grid, method, span, depth, _report):
-    """The trapezoidal rule gives the energy that the stop takes."""
+    """The trapezoidal rule gives the energy and the impulse that the stop takes."""
     d0, r0 = tip_of(grid.motion, grid.q0, grid.v0)
     d1, r1 = tip_of(grid.motion, grid.q, grid.v)
-    power = r0 * contact_force(grid.motion, d0, r0) + r1 * contact_force(grid.motion, d1, r1)
-    _write_on_cubic(grid, method, span, depth, (d0, 0.5 * span[1] * power, False))
+    f0, f1, half = contact_force(grid.motion, d0, r0), contact_force(grid.motion, d1, r1), 0.5 * span[1]
+    given = half * (r0 * f0 + r1 * f1), half * (f0 + f1), max(f0, f1)
+    _write_on_cubic(grid, method, span, depth, (d0, given, False))
 
 
 end_contact_step = make_end_of_step(cubic_interpolation, _write_contact)

@@ -60,7 +60,7 @@ from contact.integrators.grid import (
 )
 from contact.laws import NEWTON
 from contact.machine.compiled import inlined, kernel
-from contact.touch.passage import add_loss, close_touch, open_touch
+from contact.touch.passage import add_exchange, close_touch, open_touch
 from contact.trajectory import IMPACT
 
 
@@ -92,7 +92,8 @@ def write_percussion(grid, corner, span, _depth, push):
         _d, after = tip_of(grid.motion, grid.q_at, grid.v)
         if opens:
             open_touch(recorder, grid.first, start + corner * h, before, IMPACT, grid.q_at, grid.v_at)
-        add_loss(recorder, 0.5 * (before - after) * (before + after) / grid.motion.inverse_mass)
+        loss = 0.5 * (before - after) * (before + after) / grid.motion.inverse_mass
+        add_exchange(recorder, loss, push, math.nan)
         close_touch(recorder, grid.first, start + corner * h, after, grid.q_at, grid.v)
         marks.touching = 1
 

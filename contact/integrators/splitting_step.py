@@ -87,36 +87,40 @@ def tip_rate(motion, v, sine, cosine):
 
 @kernel
 def kick(motion, tip, v, length):
-    """The contact acts for a time `length` [s] on velocities alone; returns the energy it has taken [J].
+    """The contact acts for a time `length` [s] on velocities alone.
 
-    `tip`: penetration, sine and cosine of the drive's phase.
+    `tip`: penetration, sine and cosine of the drive's phase.  Returns the energy it has taken [J], its
+    impulse [N s] and its force [N].
     """
     depth, sine, cosine = tip
     rate = tip_rate(motion, v, sine, cosine)
     force = contact_force(motion, depth, rate)
     if force == 0.0:
-        return 0.0
+        return 0.0, 0.0, 0.0
     _stiffness, damping = contact_tangent(motion, depth, rate)
     x = damping * motion.inverse_mass * length
     impulse = force * length * (-math.expm1(-x) / x if x != 0.0 else 1.0)
     for k in range(v.size):
         v[k] += push_on(motion, k, impulse)
-    return impulse * (rate - 0.5 * motion.inverse_mass * impulse)
+    return impulse * (rate - 0.5 * motion.inverse_mass * impulse), impulse, force
 
 
 @kernel
 def take_step(motion, split, length, tip, u, v, with_force):
     """One step of `length` [s] from `tip` (see `kick`); `split`: the composition, and its sub-flows over it.
 
-    Returns the tip at the end, the energy taken by the contact, and whether a kick found the tip in it.
+    Returns the tip at the end, the energy [J] and impulse [N s] taken by the contact with its largest force
+    [N], and whether a kick found the tip in it.
     Without `with_force` the last kick is left out.
     """
     composition, flows = split
-    n, stages, loss, touched = u.size, composition.flows.size, 0.0, False
+    n, stages, touched = u.size, composition.flows.size, False
+    loss, impulse, largest = 0.0, 0.0, 0.0
     depth, sine, cosine = tip
     for j in range(stages + 1):
         if depth > 0.0 and (with_force or j < stages):
-            loss += kick(motion, (depth, sine, cosine), v, composition.kicks[j] * length)
+            energy, push, force = kick(motion, (depth, sine, cosine), v, composition.kicks[j] * length)
+            loss, impulse, largest = loss + energy, impulse + push, max(largest, force)
             touched = True
         if j == stages:
             break
@@ -129,7 +133,7 @@ def take_step(motion, split, length, tip, u, v, with_force):
             u[k] = flow[k, 0] * uk + flow[k, 1] * vk + flow[k, 4]
             v[k] = flow[k, 2] * uk + flow[k, 3] * vk + flow[k, 5]
             depth += at_tip(motion, k, u[k])
-    return (depth, sine, cosine), loss, touched
+    return (depth, sine, cosine), (loss, impulse, largest), touched
 
 
 @inlined
@@ -140,7 +144,7 @@ def shorter_step(grid, split, x, h, with_force):
         u[k], v[k] = grid.q0[k], grid.v0[k]
     tip = tip_at(motion, u, grid.clock + grid.progress[0].step * grid.step)
     shorter = split[0], sub_flows(motion, split[0], x * h)
-    (depth, sine, cosine), _loss, _touched = take_step(motion, shorter, x * h, tip, u, v, with_force)
+    (depth, sine, cosine), _given, _touched = take_step(motion, shorter, x * h, tip, u, v, with_force)
     return depth, tip_rate(motion, v, sine, cosine)
 
 
@@ -164,19 +168,19 @@ def split_steps(grid, split):
     motion, progress, h, u, v = grid.motion, grid.progress[0], grid.step, grid.q, grid.v
     tip, look = tip_at(motion, u, grid.clock + progress.step * h), progress.step
     while progress.step < grid.steps:
-        count, before, loss, touched = 1, tip[0], 0.0, False
+        count, before, given, touched = 1, tip[0], (0.0, 0.0, 0.0), False
         if progress.step >= look and before < 0.0 and grid.recorder.marks[0].touching == 0:
             count = int(min(clear_steps(motion, before, u, v, h), grid.steps - progress.step))
             if count < WORTHWHILE:
                 count, look = 1, progress.step + WORTHWHILE // 2
         if count == 1:
-            tip, loss, touched = take_step(motion, split, h, tip, u, v, True)
+            tip, given, touched = take_step(motion, split, h, tip, u, v, True)
         else:
             propagate(motion, u, v, count * h, u, v)
         if count > 1 or (progress.step + 1) % RENEW == 0:
             tip = tip_at(motion, u, grid.clock + (progress.step + count) * h)
         no_contact = tip[0] <= 0.0 and not touched
-        status = end_split_step(grid, split, count, tip[0], no_contact, (before, loss, touched))
+        status = end_split_step(grid, split, count, tip[0], no_contact, (before, given, touched))
         if status != DONE:
             return status
     return DONE

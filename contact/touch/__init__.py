@@ -3,6 +3,7 @@
 `newton`, `delayed`, `linear`, `hertz`   the laws
 `passage`                                a touch from strike to release, under any law, and its record
 `series`, `time_series`                  power series of a contact: what force laws share; in time
+`exchange`                               work, impulse and largest force of a step
 `tangent_series`                         tangents through a touch
 
 How to add a law, say N = k d^3
@@ -22,17 +23,21 @@ What a file offers.  `motion` is the oscillator, `run` the state of the motion
     LAW, METHOD                               the law in words; the name of its exact method
     REGIMES                                   where the tip can be: ``contact.trajectory.Regime``
     series_size(motion) -> order, columns     size of the workspace of one step
-    strike(motion, run, u, v, approach) -> regime, rebound, loss
+    strike(motion, run, u, v, approach) -> regime, rebound, loss, impulse
                                               the immediate effect of a touch: the regime that follows, the
-                                              tip velocity after it (NaN if not known yet) [m/s], and the
-                                              energy lost [J]
+                                              tip velocity after it (NaN if not known yet) [m/s], the energy
+                                              lost [J] and the impulse of the stop (NaN if none acts at once)
+                                              [N s]; before SUSTAINED, run.memory0 is the time until rest [s]
     step(motion, run, u, v, limit, series) -> s, h, regime
                                               computes the series from (u, v) and a step of at most `limit`
                                               [s]: its length s in the law's own variable, its length h [s],
                                               and the regime that follows; NaN if the series gives no step
     series_variable(motion, t, s, series)     the variable of the series a time t [s] into a step up to s
     state(motion, run, s, series, u, v)       writes the deviations there into (u, v)
-    work(motion, run, s, series)              work done on the stop up to there [J]
+    exchange(motion, run, span, series, known) -> work, impulse, force
+                                              what the tip gives to the stop in a step up to span[1]: work
+                                              [J], impulse [N s], and the larger of `known` and the largest
+                                              force from span[0] on [N] (``contact.touch.exchange``)
     leave(motion, run, u, v) -> velocity      sets run.contact_order for the flight after the release; the
                                               tip velocity there [m/s]
     force(motion, d, d') -> N                 for the methods with a time step, at d >= 0
@@ -51,7 +56,8 @@ What a file offers.  `motion` is the oscillator, `run` the state of the motion
                                               `free` modes and the modal state (q, q')
     repeated_touch(motion, speed, period)     in closed form, the touch that repeats after some drive periods,
                                               as (jump, duration, leaves) of ``single_impact.Kick``, or None
-The last two are plain functions.  What a file leaves out is that of ``contact.touch.time_series``, or else
+    improve(motion, log, states)              betters the finished log of a run, its rows and states
+The last three are plain functions.  What a file leaves out is that of ``contact.touch.time_series``, or else
 that of ``contact.touch.series``.
 
 An unknown code is an error wherever a law is needed.  A kernel takes no functions as arguments; `by_law`

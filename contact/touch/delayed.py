@@ -26,6 +26,7 @@ with the deviation (gap, -tau v) - R (p, r) and comes back with (gap, v) - (p, r
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -36,8 +37,8 @@ import numpy as np
 
 from beam.parameters import brief, final, require, require_array, require_kind, require_within
 from contact.errors import NotPeriodic
-from contact.flight.modal_flow import free_flow, hold, push_on, tip_state
-from contact.flight.motion import COSINE
+from contact.flight.modal_flow import free_flow, hold, push_on, tip_state, tip_steady
+from contact.flight.motion import COSINE, DECAY, LOAD, SQUARE, WEIGHT
 from contact.flight.variation import NUMBER0, NUMBER1, all_tip_changes, tangent_flight
 from contact.laws import ContactLaw
 from contact.machine.compiled import kernel, part
@@ -127,7 +128,7 @@ class DelayedRestitution(ContactLaw):
 LAW, METHOD = "DelayedRestitution", "event-driven"
 REGIMES = (OUTSIDE, WAITING)
 
-force, stiffness, slopes, work = newton.force, newton.stiffness, newton.slopes, newton.work
+force, stiffness, slopes = newton.force, newton.stiffness, newton.slopes
 
 RESTITUTION, DELAY = 1, 3  # rows of the table, each followed by its slope; row 0 holds the approach speeds
 SINGULAR = 1e-13  # a smaller determinant of I - N R is rounding of terms of size 1: the mode is back
@@ -167,7 +168,8 @@ def strike(motion, run, u, v, approach):
     """The touch: how long the tip will wait, and with which velocity it will leave."""
     restitution, _slope, run.wait, _slope = numbers_at(motion.table, approach)
     run.rebound = -restitution * approach
-    return WAITING, run.rebound, 0.5 * (approach * approach - run.rebound**2) / motion.inverse_mass
+    impulse = approach / motion.inverse_mass
+    return WAITING, run.rebound, 0.5 * approach * impulse, impulse
 
 
 @part
@@ -183,6 +185,25 @@ def state(motion, run, h, series, u, v):
     """The deviation a time `h` [s] into the wait."""
     u[0], v[0] = 0.0, 0.0
     hold(motion, run.clock + h, u, v)
+
+
+@kernel
+def exchange(motion, run, span, series, known):
+    """The impulse that holds the tip against spring and drive, and at the end the impulse of the rebound.
+
+    In the wait phi u = -s, s the steady tip displacement past the stop, so that N phi^2 = s'' + c s' +
+    omega^2 s + phi g.  Its integral has a closed form.  The instants of touch and rebound have no largest
+    force.
+    """
+    w, modes, length = motion.drive, motion.modes, span[1]
+    height, rate, _pull = tip_steady(motion, run.clock)
+    height_end, rate_end, _pull = tip_steady(motion, run.clock + length)
+    area = motion.level * length - (rate_end - rate) / (w * w) if w > 0.0 else height * length
+    pull = rate_end - rate + modes[DECAY, 0] * (height_end - height) + modes[SQUARE, 0] * area
+    pull += modes[WEIGHT, 0] * modes[LOAD, 0] * length
+    if run.wait > 0.0:
+        return 0.0, pull / motion.inverse_mass, math.nan
+    return -0.5 * run.rebound**2 / motion.inverse_mass, (pull - run.rebound) / motion.inverse_mass, math.nan
 
 
 @part

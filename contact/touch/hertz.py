@@ -31,7 +31,8 @@ from contact.flight.motion import SQUARE
 from contact.flight.polynomial_root import first_polynomial_root, horner, polynomial_root
 from contact.machine.compiled import kernel, part
 from contact.machine.vector_loops import LANES, next_modes, weighted_rows
-from contact.touch.series import limited_by_force, log_longest, powers_of, work_of
+from contact.touch.exchange import exchange_of
+from contact.touch.series import limited_by_force, log_longest, powers_of
 from contact.trajectory import CONTACT, OUTSIDE
 
 LAW, METHOD = "HertzContact or HuntCrossley", "contact-series"
@@ -247,6 +248,7 @@ def state(motion, run, s, series, u, v):
 
 
 @kernel
-def work(motion, run, s, series):
-    """Work that the tip does on the stop up to sigma = `s`, the integral of r N d' [J]."""
-    return work_of(series, series.scalars[PUSH], series.rows[:, SPEED], s)
+def exchange(motion, run, span, series, known):
+    """What the tip gives to the stop: work, impulse and largest force; see ``contact.touch``."""
+    rate, root = series.rows[:, SPEED], series.scalars[ROOT]
+    return exchange_of(series, series.scalars[PUSH], rate, root, span, known)

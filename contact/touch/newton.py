@@ -12,7 +12,12 @@ last 2w/a, 2ew/a, ..., and their sum W = 2w/(a(1 - e)) is finite.  If a changes,
     integral from 0 to T of (a/a_0)^(2/3) dt = W.
 
 In a free flight |a - a_0| <= J T, J the bound of the jerk; the push of the wall on the modes adds to a.  With
-J W << a, T is close to W: the hops end before the pull does.  Hops so low that rounding decides over them
+J W << a, T is close to W: the hops end before the pull does.  For a = a_0 + j t and modal damping that takes
+b w off a speed w in a unit of time, to first order in j and b and for any e,
+
+    T = W (1 - (j + a b/2) W/(3 a)).
+
+Hops so low that rounding decides over them
 then change into a stay at once.  The mean force of hops is the force that holds the tip, so that the modes
 differ from their motion under the hops by h.  The impulse that takes the speed w off takes the energy
 w^2/(2 sum phi^2), which the hops would lose together.
@@ -31,6 +36,7 @@ from contact.flight.modal_flow import (
     push_on,
     tip_rounding,
     tip_state,
+    tip_steady,
     tip_sum,
 )
 from contact.flight.motion import DECAY, LOAD, SQUARE, WEIGHT
@@ -38,8 +44,9 @@ from contact.flight.polynomial_root import first_polynomial_root
 from contact.flight.variation import NUMBER0, all_tip_changes
 from contact.machine.compiled import kernel, part
 from contact.touch import time_series
+from contact.touch.exchange import UNIFORM, exchange_of
 from contact.touch.time_series import FORCE, begin, extend, free_pull, longest_step
-from contact.trajectory import OUTSIDE, SUSTAINED
+from contact.trajectory import IMPACT, OUTSIDE, STAY, SUSTAINED
 
 LAW, METHOD = "NewtonRestitution", "event-driven"
 REGIMES = (OUTSIDE, SUSTAINED)
@@ -102,15 +109,68 @@ def hops_end(motion, run, u, v, rebound, rounding):
 
 
 @kernel
+def hopping(motion, clock, u, v, rebound):
+    """W of hops that begin with the speed `rebound` [s], and the part by which they end earlier [1].
+
+    While they go on the mean force a/sum phi^2 acts, under which a changes at the rate j.  W is 0 where the
+    hops do not end.
+    """
+    modes, drag, jerk = motion.modes, 0.0, -(motion.drive**2) * tip_steady(motion, clock)[1]
+    for k in range(u.size):
+        drag += modes[WEIGHT, k] ** 2 * modes[DECAY, k] / motion.inverse_mass
+    pull = tip_state(motion, clock, u, v)[2] - drag * rebound
+    for k in range(u.size):
+        own = mode_acceleration(motion, k, u[k], v[k]) + push_on(motion, k, pull / motion.inverse_mass)
+        jerk -= modes[WEIGHT, k] * (modes[DECAY, k] * own + modes[SQUARE, k] * v[k])
+    lost = pull * (1.0 - motion.number0)
+    if not lost > 0.0:
+        return 0.0, 0.0
+    whole = 2.0 * rebound / lost
+    return whole, (jerk + 0.5 * drag * pull) * whole / (3.0 * pull)
+
+
+@kernel
+def improve(motion, log, states):
+    """Date the stays by the impacts before them.
+
+    The last hops are so low that rounding leaves their speed v two digits.  Hops before them give the time of
+    rest as well.  Its error is the rounding of the tip displacement over v (1 - e)^2, as those of all hops
+    add up, and W (W Omega)^2 for a pull that changes at the frequency Omega.  The best is taken
+    that agrees with those after it.
+    """
+    lost, rest = max(1.0 - motion.number0, EPS), 0.0
+    for i in range(1, log.size):
+        stay, least, back, following = log[i], math.inf, 1, 1
+        while stay.kind == STAY and back <= i and log[i - back].kind == IMPACT:
+            if back == following:
+                following += 1 + back // 4
+                row, u, v = log[i - back], states[i - back, 1, 0], states[i - back, 1, 1]
+                whole, sooner = hopping(motion, row.start, u, v, -row.rebound)
+                error = whole * (sooner**2 + (whole * motion.fastest) ** 2)
+                error += tip_rounding(motion, u, v) / max(-row.rebound * lost * lost, 1e-300)
+                found = (row.period - stay.period) * motion.period + row.start + whole * (1.0 - sooner)
+                if 0.0 < whole and error < least and (back == 1 or abs(found - rest) <= least):
+                    least, rest = error, found
+            back += 1
+        if least < math.inf:
+            stay.start = rest
+            hold(motion, rest, states[i, 0, 0], states[i, 0, 1])
+
+
+@kernel
 def strike(motion, run, u, v, approach):
     """The impact; in the regime SUSTAINED the hops that follow it are a stay."""
     e, rounding = motion.number0, tip_rounding(motion, u, v)
     newton_impact(motion, v, approach, e)
-    loss = 0.5 * (1.0 - e * e) * approach * approach / motion.inverse_mass
+    turn = 1.0 + e  # rounded, so that the loss belongs to the rebound that follows
+    impulse = turn * approach / motion.inverse_mass
+    loss = 0.5 * (2.0 - turn) * impulse * approach
     if hops_end(motion, run, u, v, e * approach, rounding):
-        return SUSTAINED, -e * approach, loss
+        whole, sooner = hopping(motion, run.clock, u, v, e * approach)
+        run.memory0 = whole * (1.0 - sooner) if whole <= motion.period and abs(sooner) < STEADY_PULL else 0.0
+        return SUSTAINED, -e * approach, loss, impulse
     run.contact_order = 1 if e * approach > 0.0 else 2
-    return OUTSIDE, -e * approach, loss
+    return OUTSIDE, -e * approach, loss, impulse
 
 
 @kernel
@@ -148,10 +208,12 @@ def state(motion, run, h, series, u, v):
     hold(motion, run.clock + h, u, v)
 
 
-@part
-def work(motion, run, h, series):
-    """No work: the tip is at rest on the wall [J]."""
-    return 0.0
+@kernel
+def exchange(motion, run, span, series, known):
+    """The impulse and the largest force of the rest; no work, for the tip does not move."""
+    force = series.scalars[FORCE]
+    _work, impulse, largest = exchange_of(series, force, force, UNIFORM, span, known)
+    return 0.0, impulse, largest
 
 
 @part

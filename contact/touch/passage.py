@@ -28,10 +28,21 @@ from contact.trajectory import GRAZE, IMPACT, OUTSIDE, STAY, SUSTAINED
 MARKS = np.dtype([(name, "i8") for name in ("logged", "sampled", "strobed", "impacts", "touching")])
 """Rows in use of log, samples and strobes; impacts since the last strobe; whether the tip touches."""
 
-_NAMES = ("period", "start", "end_period", "end", "approach", "rebound", "loss", "kind")
+_NAMES = (
+    "period",
+    "start",
+    "end_period",
+    "end",
+    "approach",
+    "rebound",
+    "loss",
+    "impulse",
+    "peak_force",
+    "kind",
+)
 TOUCH = np.dtype([(name, "i8" if name in ("period", "end_period", "kind") else "f8") for name in _NAMES])
-"""A touch: period and clock of its start and of its end [s], tip velocity at both [m/s], energy lost [J] and
-``contact.trajectory.ImpactKind``."""
+"""A touch: period and clock of its start and of its end [s], tip velocity at both [m/s], energy given to the
+stop [J], impulse [N s] and largest force [N] (NaN if not known) and ``contact.trajectory.ImpactKind``."""
 
 
 class Touches(NamedTuple):
@@ -80,15 +91,19 @@ def open_touch(record, period, clock, approach, kind, u, v):
     row, n = record.log[i], u.size
     row.period, row.start, row.end_period, row.end = period, clock, period, math.nan
     row.approach, row.rebound, row.loss, row.kind = approach, math.nan, 0.0, kind
+    row.impulse = row.peak_force = math.nan
     put_state(record.log_state[i], 0, u, v)
     record.log_state[i, 2 * n :] = math.nan
 
 
 @part
-def add_loss(record, energy):
-    """Add energy that the touch under way has taken [J]."""
+def add_exchange(record, work, impulse, force):
+    """Add work [J], impulse [N s] and largest force [N] (NaN if it has none) to the touch under way."""
     if record.log.size > 0:
-        record.log[record.marks[0].logged - 1].loss += energy
+        row = record.log[record.marks[0].logged - 1]
+        row.loss += work
+        row.impulse = impulse if math.isnan(row.impulse) else row.impulse + impulse
+        row.peak_force = row.peak_force if force <= row.peak_force else force
 
 
 @kernel
@@ -133,8 +148,8 @@ def begin(motion, run, u, v, touches):
     """
     approach = tip_state(motion, run.clock, u, v)[1]
     open_touch(touches, run.period, run.clock, approach, IMPACT, u, v)
-    run.regime, rebound, loss = touch.strike(motion, run, u, v, approach)
-    add_loss(touches, loss)
+    run.regime, rebound, loss, impulse = touch.strike(motion, run, u, v, approach)
+    add_exchange(touches, loss, impulse, math.nan)
     if run.regime == OUTSIDE or run.regime == SUSTAINED:
         close_touch(touches, run.period, run.clock, rebound, u, v)
     return approach, rebound
@@ -144,18 +159,24 @@ def begin(motion, run, u, v, touches):
 def meet(motion, run, u, v, crosses, touches):
     """A flight has met the stop: a touch begins, or with `crosses` false it is a graze, without effect.
 
-    Accumulated impacts become a stay: their last hops are left out, and the energy of these is its loss.
+    Accumulated impacts become a stay: their last hops are left out.  It begins when these would have ended,
+    and their energy is its loss.
     """
     if not crosses:
         open_touch(touches, run.period, run.clock, 0.0, GRAZE, u, v)
+        add_exchange(touches, 0.0, 0.0, 0.0)
         close_touch(touches, run.period, run.clock, 0.0, u, v)
         run.contact_order = 2
     else:
         _approach, rebound = begin(motion, run, u, v, touches)
         if run.regime == SUSTAINED:
-            open_touch(touches, run.period, run.clock, rebound, STAY, u, v)
-            add_loss(touches, 0.5 * rebound * rebound / motion.inverse_mass)
             hold(motion, run.clock, u, v)
+            late = int((run.clock + run.memory0) / motion.period)
+            begins = run.clock + run.memory0 - late * motion.period
+            open_touch(touches, run.period + late, begins, 0.0, STAY, u, v)
+            work, impulse = 0.5 * rebound * rebound / motion.inverse_mass, rebound / motion.inverse_mass
+            add_exchange(touches, work, impulse, math.nan)
+            run.memory0 = -1.0
 
 
 def _follow(law: SimpleNamespace, watch: Callable[..., None]) -> Callable[..., int]:

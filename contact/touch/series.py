@@ -21,18 +21,10 @@ import numpy as np
 
 from contact.flight.modal_flow import tip_state
 from contact.machine.compiled import aligned, inlined, kernel, part
-from contact.machine.vector_loops import weighted_rows
 from contact.trajectory import CONTACT
 
 WINDOW = 8  # number of last orders of the force that limit a step
 LOOSE = 1.15  # largest ratio of a step to the bound by an earlier order: no two agree better
-
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
-NODE_POWERS = (0.5 * (1.0 + _NODES)) ** np.arange(31.0)[:, None]
-WEIGHTS = 0.5 * _WEIGHTS
-"""Gauss's rule on [0, 1], and powers of its nodes up to the highest order of a series.  For a product that
-turns by some six radians in a step its error is below 1e-20.  For series that converge up to R and a step s
-it falls as rho^-32, rho = q + sqrt(q^2 - 1), q = 2 R/s - 1: faster than the (s/R)^p of the series."""
 
 
 class Series(NamedTuple):
@@ -53,7 +45,7 @@ def new_series(order, columns):
 def strike(motion, run, u, v, approach):
     """A touch under a force law: the contact begins at d = 0; see ``contact.touch``."""
     run.memory0, run.memory1 = 0.0, -1.0
-    return CONTACT, math.nan, 0.0
+    return CONTACT, math.nan, 0.0, math.nan
 
 
 @part
@@ -84,6 +76,10 @@ def repeated_touch(motion, speed, period):
     return None
 
 
+def improve(motion, log, states):
+    """The log is right to rounding as it is."""
+
+
 @part
 def powers_of(s, out):
     """Fill `out` with 1, s, s^2, ..."""
@@ -91,21 +87,6 @@ def powers_of(s, out):
     for n in range(out.size):
         out[n] = power
         power *= s
-
-
-@kernel
-def work_of(series, force, rate, s):
-    """The integral of a force times a rate, both series, over a step up to `s`; uses the last two rows."""
-    terms, nodes, power, done = force.size, WEIGHTS.size, 1.0, 0.0
-    pushes, rates, push, speed = series.scalars[6], series.scalars[7], np.empty(nodes), np.empty(nodes)
-    for n in range(terms):
-        pushes[n], rates[n] = power * force[n], power * rate[n]
-        power *= s
-    weighted_rows(pushes, 0, 1, NODE_POWERS, terms, push)
-    weighted_rows(rates, 0, 1, NODE_POWERS, terms, speed)
-    for i in range(nodes):
-        done += WEIGHTS[i] * s * push[i] * speed[i]
-    return done
 
 
 @kernel

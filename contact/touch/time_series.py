@@ -14,13 +14,14 @@ from contact.flight.elementary import EPS
 from contact.flight.modal_flow import speed_scale, tip_steady, tip_sum
 from contact.machine.compiled import kernel, part
 from contact.machine.vector_loops import next_order, weighted_rows
-from contact.touch.series import limited_by_force, log_longest, powers_of, work_of
+from contact.touch.exchange import UNIFORM, exchange_of
+from contact.touch.series import limited_by_force, log_longest, powers_of
 from contact.trajectory import INSIDE
 
 ORDER = 30  # order of the series in time
 
 DEPTH, RATE, FORCE, STEADY, POWERS, SLOPES = range(6)
-"""Rows of the scalar series: d, d' (filled by `work`), N, the steady tip motion, powers of time and their
+"""Rows of the scalar series: d, d' (filled by `exchange`), N, the steady tip motion, powers of time and their
 derivatives."""
 
 TOLERANCE = 0.1 * EPS  # size of the last terms of a step, relative to the modal speeds
@@ -120,9 +121,11 @@ def state(motion, run, h, series, u, v):
 
 
 @kernel
-def work(motion, run, h, series):
-    """Work that the tip does on the stop in a time `h` [s], the integral of N d' [J]."""
+def exchange(motion, run, span, series, known):
+    """What the tip gives to the stop: work, impulse and largest force; see ``contact.touch``."""
     depth, rate = series.scalars[DEPTH], series.scalars[RATE]
+    if run.regime == INSIDE:
+        return 0.0, 0.0, max(known, 0.0)
     for n in range(ORDER):
         rate[n] = (n + 1.0) * depth[n + 1]
-    return 0.0 if run.regime == INSIDE else work_of(series, series.scalars[FORCE], rate, h)
+    return exchange_of(series, series.scalars[FORCE], rate, UNIFORM, span, known)

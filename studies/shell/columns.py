@@ -33,6 +33,8 @@ UNITS = {
     "m/s^2": "m_per_s2",
     "1/s": "per_s",
     "J": "j",
+    "N": "newton",
+    "N s": "newton_s",
     "µs": "us",
     "ms": "ms",
     "kg^(-1/2)": "per_sqrt_kg",

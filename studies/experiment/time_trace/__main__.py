@@ -47,7 +47,7 @@ ORBIT_PERIODS = 2
 APERIODIC = 8
 """Drive periods shown of a motion that has no period."""
 
-TOLD = ("first_touch", "approach", "restitution", "delay", "kick", "impacts", "contact_time", "ringing")
+TOLD = "first_touch approach restitution delay kick impacts contact_time peak_force ringing".split()
 """Columns of a collision that are shown to a person."""
 
 

@@ -174,6 +174,7 @@ class Equations:
             approach=approach,
             rebound=rebound,
             loss=0.5 * (approach**2 - rebound**2) / self.compliance if self.hard else 0.0 * rebound,
+            impulse=(approach - rebound) / self.compliance if self.hard else np.nan * rebound,
             kind=np.zeros(begin.size, np.int64),
         )
 
