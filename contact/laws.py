@@ -93,8 +93,9 @@ class NewtonRestitution(ContactLaw):
     local_restitution : float, callable or array_like of shape (2, n)
         e, from 0 (plastic) to 1 (elastic) [1].  The letter's tau is this number for one mode only.  It can be
         a function of the approach speed [m/s], or a table: two or more rising speeds [m/s], zero or more, and
-        the restitutions there.  A table is interpolated by monotone cubics and kept as a pair of tuples.  At
-        vanishing speed (hops, grazing, Nordmark's map) the value at the lowest speed holds.
+        the restitutions there.  A table is interpolated by monotone cubics (F. N. Fritsch, J. Butland, SIAM
+        J. Sci. Stat. Comput. 5 (1984) 300) and kept as a pair of tuples.  At vanishing speed (hops, grazing,
+        Nordmark's map) the value at the lowest speed holds.
     speeds : (float, float)
         Range of approach speeds in which a function is sampled [m/s].  Functions and tables keep their end
         values beyond their range.
@@ -112,10 +113,11 @@ class NewtonRestitution(ContactLaw):
         given, name = self.local_restitution, "local_restitution"
         require_speeds(self.speeds)
         if isinstance(given, list | tuple | np.ndarray):
-            object.__setattr__(self, name, require_points(name, given, "[1]"))
+            given = require_points(name, given, "[1]")
+            object.__setattr__(self, name, given)
         elif not callable(given):
             require_within(name, given, "[1]", low=0, high=1)
-        for v, e in self.table[:2].T:
+        for v, e in zip(*given, strict=True) if isinstance(given, tuple) else self.table[:2].T:
             if not 0.0 <= e <= 1.0:
                 require_within(f"{name} at an approach speed of {v:g} m/s", e, "[1]", low=0, high=1)
 

@@ -2,8 +2,7 @@
 
 A table has the approach speeds [m/s], rising, in its first row.  Each function takes two more rows, its
 values and its slopes.  Between two columns a function is the cubic with their values and slopes; beyond the
-table it keeps its end values.  The slopes of samples are those of their cubic spline.  The slopes of given
-points are those of the monotone cubic of F. N. Fritsch and R. E. Carlson, SIAM J. Numer. Anal. 17 (1980) 238.
+table it keeps its end values.  The slopes of samples are those of their cubic spline.
 """
 
 from __future__ import annotations
@@ -23,6 +22,8 @@ Points = Sequence[Sequence[float]]  # speeds [m/s], and a number at each
 
 SPEEDS = 1025  # samples of a function of the approach speed: a cubic spline over six decades is good to 1e-9
 
+CLOSEST = 1e-300  # least distance of two speeds of a table [m/s]: slopes stay finite
+
 
 def require_speeds(speeds: object) -> None:
     """Refuse `speeds` [m/s] unless it is the range of a table, two rising numbers above zero."""
@@ -35,7 +36,7 @@ def require_points(name: str, given: object, unit: str) -> tuple[tuple[float, ..
     """Rising speeds [m/s], zero or more, and the numbers in `unit` at each; refuses any other `given`."""
     words = "two rows: two or more rising speeds, zero or more, and a number at each"
     points = require_array(name, given, f"m/s and {unit}", dimensions=2, words=words)
-    if len(points) != 2 or points.shape[1] < 2 or points[0, 0] < 0.0 or np.any(np.diff(points[0]) <= 0.0):
+    if len(points) != 2 or points.shape[1] < 2 or points[0, 0] < 0.0 or np.any(np.diff(points[0]) < CLOSEST):
         raise InvalidValue(name, f"is {shown(points.tolist())} m/s and {unit}; it must be {words}")
     return tuple(points[0].tolist()), tuple(points[1].tolist())
 

@@ -58,7 +58,7 @@ def test_a_rebound_without_delay_is_the_same_motion():
 
 @pytest.mark.parametrize("modes", [1, 4])
 def test_orbits_are_those_of_the_constant_at_their_speed_but_for_their_multipliers(modes):
-    """The product of the multipliers is G e (e + e' v), with the free flow's G.  The fold has least excess."""
+    """The product of the multipliers is G e (e + e' v), with the free flow's G; the fold has least excess."""
     oscillator = equation_1(22.2, BY_SPEED, gap=GAP) if modes == 1 else beam(22.2, BY_SPEED, modes)
     free = math.exp(-5.0 * oscillator.period * np.sum(oscillator.model.decay_rate))
 

@@ -201,10 +201,10 @@ class MaximalFamily(SingleImpactFamily):
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        _ = self.oscillator.local_restitution, self.coefficients  # each mode that is kicked comes to rest
         if self.oscillator.stop.law.table.size:
             words = "must have a constant restitution here; KickFamily and Shooting take any law"
             raise InvalidType("law of the stop", words)
-        _ = self.oscillator.local_restitution, self.coefficients  # each mode that is kicked comes to rest
 
     @classmethod
     def from_oscillator(
