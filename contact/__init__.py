@@ -29,6 +29,7 @@ The files: the problem and its answer
     ``drive``           base motion, `HarmonicDrive`
     ``laws``            contact laws: `NewtonRestitution` (at once), `LinearContact`, `HertzContact`,
                         `HuntCrossley` (forces); `DelayedRestitution` (one mode) stands in ``touch``
+    ``speed_table``     functions of the approach speed, such as a restitution, as tables
     ``stop``            `Stop`: a gap and a law
     ``oscillator``      `ImpactOscillator`: a ``beam.ModalModel``, a stop and a drive; the equation of motion
     ``trajectory``      `State`, `Impacts`, `Trajectory`

@@ -16,12 +16,14 @@ Compiled code sees no objects: a law gives it a small integer, two numbers and a
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
 
 from beam.parameters import final, require_within, suspect
+from contact.speed_table import SPEEDS, Points, SpeedFunction, raised, require_points, require_speeds, sampled
 
 NEWTON, LINEAR, HERTZ = 0, 1, 2
 """Codes of the laws in this file; another law stands with its code and its compiled part in one file of
@@ -88,16 +90,59 @@ class NewtonRestitution(ContactLaw):
 
     Parameters
     ----------
-    local_restitution : float
-        e, from 0 (plastic) to 1 (elastic) [1].  The letter's tau is this number for one mode only.
+    local_restitution : float, callable or array_like of shape (2, n)
+        e, from 0 (plastic) to 1 (elastic) [1].  The letter's tau is this number for one mode only.  It can be
+        a function of the approach speed [m/s], or a table: two or more rising speeds [m/s], zero or more, and
+        the restitutions there.  A table is interpolated by monotone cubics (F. N. Fritsch, J. Butland, SIAM
+        J. Sci. Stat. Comput. 5 (1984) 300) and kept as a pair of tuples.  At vanishing speed (hops, grazing,
+        Nordmark's map) the value at the lowest speed holds.
+    speeds : (float, float)
+        Range of approach speeds in which a function is sampled [m/s].  Functions and tables keep their end
+        values beyond their range.
+
+    Raises InvalidValue for a restitution outside 0 to 1 at any of these speeds, or speeds that do not rise,
+    and InvalidType for one that is no number.
     """
 
-    local_restitution: float
+    local_restitution: float | SpeedFunction | Points
+    speeds: tuple[float, float] = field(default=(1e-5, 10.0), repr=False)
     code: ClassVar[int] = NEWTON
     units: ClassVar[dict[str, str]] = {"local_restitution": "[1]"}
 
     def __post_init__(self) -> None:
-        require_within("local_restitution", self.local_restitution, "[1]", low=0, high=1)
+        given, name = self.local_restitution, "local_restitution"
+        require_speeds(self.speeds)
+        if isinstance(given, list | tuple | np.ndarray):
+            given = require_points(name, given, "[1]")
+            object.__setattr__(self, name, given)
+        elif not callable(given):
+            require_within(name, given, "[1]", low=0, high=1)
+        for v, e in zip(*given, strict=True) if isinstance(given, tuple) else self.table[:2].T:
+            if not 0.0 <= e <= 1.0:
+                require_within(f"{name} at an approach speed of {v:g} m/s", e, "[1]", low=0, high=1)
+
+    @property
+    def numbers(self) -> tuple[float, float]:
+        """The restitution, that at the lowest speed if it depends on the speed, and zero."""
+        return (float(self.table[1, 0]), 0.0) if self.table.size else super().numbers
+
+    @cached_property
+    def table(self) -> np.ndarray:
+        """Rows: speed, restitution and its slope, shape (3, n); of a constant restitution, shape (0, 0)."""
+        given = self.local_restitution
+        if callable(given):
+            speed = np.geomspace(*self.speeds, SPEEDS)
+            return np.array([speed, *sampled("local_restitution", given, speed)])
+        if not isinstance(given, tuple):
+            return np.empty((0, 0))
+        from scipy.interpolate import PchipInterpolator  # slow to import
+
+        speed, values = np.array(given)
+        return np.array([speed, values, PchipInterpolator(speed, values)(speed, 1)])
+
+    def moved(self, first: float, second: float) -> NewtonRestitution:
+        """The law with its restitution moved by `first` at every speed."""
+        return replace(self, local_restitution=raised(self.local_restitution, first))
 
 
 @final

@@ -158,10 +158,13 @@ class ImpactOscillator:
 
     @property
     def local_restitution(self) -> float:
-        """The restitution of Newton's law at the stop [1]; TypeError for an oscillator with another law."""
+        """The restitution of Newton's law at the stop [1], at the lowest speed if it depends on the speed.
+
+        TypeError is raised for an oscillator with another law.
+        """
         words = "a NewtonRestitution, or a restitution must be given"
         law: NewtonRestitution = require_kind("law of the stop", self.stop.law, NewtonRestitution, words)
-        return law.local_restitution
+        return law.numbers[0]
 
     def with_amplitude(self, amplitude: float) -> ImpactOscillator:
         """The same oscillator driven with another base amplitude [m].

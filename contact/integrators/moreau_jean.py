@@ -1,7 +1,7 @@
 """Moreau and Jean's time stepping: impacts as percussions within a step, never located.
 
 With f = g + P sin(w t) - c v - omega^2 q the force per modal mass, U = phi . v the velocity of the tip
-towards the stop, d its penetration, p the percussion [N s] and e the restitution of Newton's law,
+towards the stop, d its penetration, p the percussion [N s] and e = e(U_n) the restitution of Newton's law,
 
     v_{n+1} = v_n + h (theta f_{n+1} + (1 - theta) f_n) - phi p
     q_{n+1} = q_n + h (theta v_{n+1} + (1 - theta) v_n)
@@ -60,6 +60,7 @@ from contact.integrators.grid import (
 )
 from contact.laws import NEWTON
 from contact.machine.compiled import inlined, kernel
+from contact.touch.newton import restitution_at
 from contact.touch.passage import add_exchange, close_touch, open_touch
 from contact.trajectory import IMPACT
 
@@ -116,13 +117,14 @@ def through_percussions(grid, prepared):
     numbers, a, f, inertia = alpha
     progress, h, q, v, motion = grid.progress[0], grid.step, grid.q, grid.v, grid.motion
     modes, new, eta = motion.modes, 1.0 - numbers.alpha_f, numbers.eta
-    restitution = motion.number0  # of Newton's law, the only law of methods by percussions
     while progress.step < grid.steps:
         sine = math.sin(motion.drive * (grid.clock + (progress.step + 1) * h))
         depth, before = tip_of(motion, q, v)
         predict(grid, alpha, sine)
         _d, after = tip_of(motion, q, v)
-        push = max(0.0, (after + restitution * before) / mobility) if depth + 0.5 * h * before >= 0.0 else 0.0
+        push = 0.0
+        if depth + 0.5 * h * before >= 0.0:  # under Newton's law, the only law of methods by percussions
+            push = max(0.0, (after + restitution_at(motion, before)[0] * before) / mobility)
         for k in range(q.size if push > 0.0 else 0):
             jump = push_on(motion, k, push)
             change = -new * (modes[DECAY, k] + eta * h * modes[SQUARE, k]) * jump / inertia[k]

@@ -158,8 +158,8 @@ class NordmarkMap:
     ) -> NordmarkMap:
         """The map of mode 1 of an `ImpactOscillator` (``ModalModel.leading_mode``), all others ignored.
 
-        `restitution` is the effective one; left out, it is the `local_restitution` of the oscillator's law,
-        and a law without one (a force law) raises TypeError.
+        `restitution` is the effective one; left out, it is the `local_restitution` of the oscillator, at the
+        lowest speed if it depends on the speed, and a law without one (a force law) raises TypeError.
         """
         require_kind("oscillator", oscillator, ImpactOscillator, "an ImpactOscillator")
         restitution = oscillator.local_restitution if restitution is None else restitution

@@ -154,12 +154,13 @@ def full_table(motion, parts):
 
 
 def period_table(motion: Motion) -> PeriodTable | None:
-    """The table of a driven oscillator of one mode under Newton's law.
+    """The table of a driven oscillator of one mode under Newton's law with a constant restitution.
 
     Returns None for another law or several modes, without stiffness or drive, for a mode with its node at the
     tip, and for one so fast that too many nodes would be needed.
     """
-    suits = motion.law == NEWTON and motion.size == 1 and motion.inverse_mass != 0.0
+    constant = motion.law == NEWTON and motion.table.size == 0
+    suits = constant and motion.size == 1 and motion.inverse_mass != 0.0
     if not (suits and motion.omega[0] > 0 and motion.drive > 0):
         return None
     ratio = max(motion.drive, float(motion.omega[0]), float(motion.decay[0])) / motion.drive

@@ -53,7 +53,7 @@ class Change:
         Derivative of the gap [m].
     law : (float, float)
         Derivatives of the numbers of the law, in the order of its `units`.  For ``DelayedRestitution`` they
-        are added to restitution and delay at every speed.
+        are added to restitution and delay at every speed, and so is that of a `local_restitution`.
     frequency, amplitude : float
         Derivatives of drive frequency [Hz] and base amplitude [m].
     """

@@ -27,26 +27,24 @@ with the deviation (gap, -tau v) - R (p, r) and comes back with (gap, v) - (p, r
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from numbers import Real
 from typing import ClassVar
 
 import numpy as np
 
-from beam.parameters import brief, final, require, require_array, require_kind, require_within
+from beam.parameters import final, require, require_within
 from contact.errors import NotPeriodic
 from contact.flight.modal_flow import free_flow, hold, push_on, tip_state, tip_steady
 from contact.flight.motion import COSINE, DECAY, LOAD, SQUARE, WEIGHT
 from contact.flight.variation import NUMBER0, NUMBER1, all_tip_changes, tangent_flight
 from contact.laws import ContactLaw
 from contact.machine.compiled import kernel, part
+from contact.speed_table import SPEEDS, SpeedFunction, at_speed, raised, require_speeds, sampled
 from contact.touch import newton
 from contact.trajectory import OUTSIDE, WAITING
 
 DELAYED = 3  # the code of this law
-SPEEDS = 1025  # samples of a function of the approach speed: a cubic spline over six decades is good to 1e-9
 
 
 @final
@@ -71,16 +69,14 @@ class DelayedRestitution(ContactLaw):
         Range of approach speeds in which functions are sampled; beyond it they keep their end values [m/s].
     """
 
-    restitution: float | Callable[[float], float]
-    delay: float | Callable[[float], float]
+    restitution: float | SpeedFunction
+    delay: float | SpeedFunction
     speeds: tuple[float, float] = (1e-5, 10.0)
     code: ClassVar[int] = DELAYED
     one_mode_only: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
-        words = "two rising numbers above zero"
-        low, high = require_array("speeds", self.speeds, "m/s", shape=(2,), words=words)
-        require(0 < low < high, f"speeds is {brief(self.speeds)} m/s; it must be {words}")
+        require_speeds(self.speeds)
         for name, unit, high in (("restitution", "[1]", 1.0), ("delay", "s", None)):
             if not callable(getattr(self, name)):
                 require_within(name, getattr(self, name), unit, low=0, high=high)
@@ -98,31 +94,14 @@ class DelayedRestitution(ContactLaw):
     @cached_property
     def table(self) -> np.ndarray:
         """Rows: speed, restitution and its slope, delay and its slope; shape (5, n)."""
-        from scipy.interpolate import CubicSpline  # slow to import
-
-        speed = np.geomspace(
-            *self.speeds, SPEEDS if callable(self.restitution) or callable(self.delay) else 2
-        )
-        rows = [speed]
-        for name in ("restitution", "delay"):
-            given = getattr(self, name)
-            if callable(given):
-                at = f"{name} at an approach speed of"
-                found = [require_kind(f"{at} {v:g} m/s", given(float(v)), Real, "a number") for v in speed]
-                values = np.array(found, dtype=float)
-                slopes = CubicSpline(speed, values)(speed, 1) if np.all(np.isfinite(values)) else values
-            else:
-                values, slopes = np.full(speed.size, float(given)), np.zeros(speed.size)
-            rows += [values, slopes]
-        return np.array(rows)
+        count = SPEEDS if callable(self.restitution) or callable(self.delay) else 2
+        speed = np.geomspace(*self.speeds, count)
+        restitution = sampled("restitution", self.restitution, speed)
+        return np.array([speed, *restitution, *sampled("delay", self.delay, speed)])
 
     def moved(self, first: float, second: float) -> DelayedRestitution:
         """The law with restitution and delay moved by so much at every speed."""
-        restitution, delay = (
-            (lambda v, one=one, step=step: one(v) + step) if callable(one) else one + step
-            for one, step in ((self.restitution, first), (self.delay, second))
-        )
-        return replace(self, restitution=restitution, delay=delay)
+        return replace(self, restitution=raised(self.restitution, first), delay=raised(self.delay, second))
 
 
 LAW, METHOD = "DelayedRestitution", "event-driven"
@@ -135,31 +114,10 @@ SINGULAR = 1e-13  # a smaller determinant of I - N R is rounding of terms of siz
 
 
 @kernel
-def hermite(table, row, low, high, h, s):
-    """Value and slope of row `row` at the part `s` of the interval `h` [m/s] between two columns."""
-    a, b = table[row, low], table[row, high]
-    da, db = h * table[row + 1, low], h * table[row + 1, high]
-    square, cube = 3.0 * (b - a) - 2.0 * da - db, 2.0 * (a - b) + da + db
-    return a + s * (da + s * (square + s * cube)), (da + s * (2.0 * square + 3.0 * s * cube)) / h
-
-
-@kernel
 def numbers_at(table, speed):
-    """Restitution [1], its slope [s/m], delay [s] and its slope [s^2/m] at an approach speed [m/s].
-
-    They are interpolated by cubics through values and slopes of the law's table; beyond it they are constant.
-    """
-    n = table.shape[1]
-    if not speed > table[0, 0]:
-        return table[RESTITUTION, 0], 0.0, table[DELAY, 0], 0.0
-    if speed >= table[0, n - 1]:
-        return table[RESTITUTION, n - 1], 0.0, table[DELAY, n - 1], 0.0
-    high = np.searchsorted(table[0], speed, "right")
-    low = high - 1
-    h = table[0, high] - table[0, low]
-    s = (speed - table[0, low]) / h
-    restitution, restitution_slope = hermite(table, RESTITUTION, low, high, h, s)
-    delay, delay_slope = hermite(table, DELAY, low, high, h, s)
+    """Restitution [1], its slope [s/m], delay [s] and its slope [s^2/m] at an approach speed [m/s]."""
+    restitution, restitution_slope = at_speed(table, RESTITUTION, speed)
+    delay, delay_slope = at_speed(table, DELAY, speed)
     return restitution, restitution_slope, delay, delay_slope
 
 

@@ -4,10 +4,11 @@ The impulse of the stop acts on the tip alone, so that the modal velocities jump
 
     v_k -> v_k - phi_k (1 + e) x' / sum_j phi_j^2,
 
-which sends the tip velocity x' to -e x' (``NewtonRestitution``).  Let an impact leave the tip with velocity
--w while it is accelerated towards the wall with a > 0.  It hops to the height h = w^2/(2a).  The next flights
-last 2w/a, 2ew/a, ..., and their sum W = 2w/(a(1 - e)) is finite.  If a changes, a speed v is multiplied by
-(a/a_0)^(1/3) too (v^3/a is the adiabatic invariant of elastic hops), and the hops end at the T with
+which sends the tip velocity x' to -e x' (``NewtonRestitution``).  If e depends on x', low hops have its value
+at the lowest speed.  Let an impact leave the tip with velocity -w while it is accelerated towards the wall
+with a > 0.  It hops to the height h = w^2/(2a), and with constant e the next flights last 2w/a, 2ew/a, ...,
+and their sum W = 2w/(a(1 - e)) is finite.  If a changes, a speed v is multiplied by (a/a_0)^(1/3) too (v^3/a
+is the adiabatic invariant of elastic hops), and the hops end at the T with
 
     integral from 0 to T of (a/a_0)^(2/3) dt = W.
 
@@ -43,6 +44,7 @@ from contact.flight.motion import DECAY, LOAD, SQUARE, WEIGHT
 from contact.flight.polynomial_root import first_polynomial_root
 from contact.flight.variation import NUMBER0, all_tip_changes
 from contact.machine.compiled import kernel, part
+from contact.speed_table import at_speed
 from contact.touch import time_series
 from contact.touch.exchange import UNIFORM, exchange_of
 from contact.touch.time_series import FORCE, begin, extend, free_pull, longest_step
@@ -108,6 +110,15 @@ def hops_end(motion, run, u, v, rebound, rounding):
     return 2.0 * rebound <= left * pull and change <= STEADY_PULL * acceleration * pull
 
 
+@part
+def restitution_at(motion, speed):
+    """e [1] and its slope [s/m] at an approach speed [m/s]."""
+    if motion.table.shape[1] == 0:
+        return motion.number0, 0.0
+    e, slope = at_speed(motion.table, 1, speed)
+    return (e, slope) if 0.0 <= e <= 1.0 else (min(max(e, 0.0), 1.0), 0.0)  # a cubic may leave the range
+
+
 @kernel
 def hopping(motion, clock, u, v, rebound):
     """W of hops that begin with the speed `rebound` [s], and the part by which they end earlier [1].
@@ -141,7 +152,8 @@ def improve(motion, log, states):
     lost, rest = max(1.0 - motion.number0, EPS), 0.0
     for i in range(1, log.size):
         stay, least, back, following = log[i], math.inf, 1, 1
-        while stay.kind == STAY and back <= i and log[i - back].kind == IMPACT:
+        same = i if motion.table.shape[1] == 0 else 1  # restitution of earlier hops is that of the last ones
+        while stay.kind == STAY and back <= same and log[i - back].kind == IMPACT:
             if back == following:
                 following += 1 + back // 4
                 row, u, v = log[i - back], states[i - back, 1, 0], states[i - back, 1, 1]
@@ -160,7 +172,7 @@ def improve(motion, log, states):
 @kernel
 def strike(motion, run, u, v, approach):
     """The impact; in the regime SUSTAINED the hops that follow it are a stay."""
-    e, rounding = motion.number0, tip_rounding(motion, u, v)
+    (e, _slope), rounding = restitution_at(motion, approach), tip_rounding(motion, u, v)
     newton_impact(motion, v, approach, e)
     turn = 1.0 + e  # rounded, so that the loss belongs to the rebound that follows
     impulse = turn * approach / motion.inverse_mass
@@ -229,18 +241,21 @@ def saltation(motion, vary, before, after, tangent):
 
     R is the reflection of the tip velocity, f and f' are the velocities of the flow before and after (M. A.
     Aizerman, F. R. Gantmacher, Quart. J. Mech. Appl. Math. 11 (1958) 243; A. B. Nordmark, J. Sound Vib. 145
-    (1991) 279).  Parameters change R as well.
+    (1991) 279).  Parameters change R as well.  If e depends on the approach v, the derivative of the rebound
+    -e v with respect to v is -(e + e' v).
     """
     n, count = motion.size, len(vary.scalars)
     clock, u, v = before
     rebound = after[2]
     _height, approach, pull = tip_state(motion, clock, u, v)
-    flip = (1.0 + motion.number0) / motion.inverse_mass
+    e, slope = restitution_at(motion, approach)
+    flip = (1.0 + e) / motion.inverse_mass
+    turn = flip + slope * approach / motion.inverse_mass
     height, rate = all_tip_changes(vary, tangent, u, v, clock)
     for j in range(height.size):
         late = -height[j] / approach  # by how much later this neighbour touches
         for k in range(n):
-            push = push_on(motion, k, flip)
+            push = push_on(motion, k, turn)
             slow = mode_acceleration(motion, k, u[k], v[k]) + push * pull
             after_it = mode_acceleration(motion, k, u[k], rebound[k])
             tangent[k, j] += (v[k] - rebound[k]) * late

@@ -16,6 +16,7 @@ import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
+from numbers import Real
 from typing import Any, Literal
 
 from beam import (
@@ -62,7 +63,9 @@ class Parameter:
 def numbers_of(law: ContactLaw) -> dict[str, tuple[str, str]]:
     """The plain numbers of a law in their order: name -> field and unit."""
     units = {"restitution": "s^0", "delay": "s"} if isinstance(law, DelayedRestitution) else law.units
-    plain = {field: unit.strip("[]") for field, unit in units.items() if not callable(getattr(law, field))}
+    plain = {
+        field: unit.strip("[]") for field, unit in units.items() if isinstance(getattr(law, field), Real)
+    }
     return {field.removeprefix("local_"): (field, unit.replace("s^0", "1")) for field, unit in plain.items()}
 
 

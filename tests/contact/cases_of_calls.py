@@ -12,6 +12,7 @@ from contact.orbits import KickFamily, PeriodicOrbit, Shooting
 GAP = 0.0107
 LAWS: dict[str, contact.ContactLaw] = {
     "newton": contact.NewtonRestitution(local_restitution=0.1),
+    "newton by table": contact.NewtonRestitution(local_restitution=[[0.0, 0.1, 3.0], [0.9, 0.5, 0.3]]),
     "delayed": contact.DelayedRestitution(restitution=0.1, delay=1e-4),
     "delayed by table": contact.DelayedRestitution(
         restitution=lambda v: 0.3 / (1 + v), delay=lambda v: 2e-4 * v**0.2

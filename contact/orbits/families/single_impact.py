@@ -39,7 +39,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-from beam.parameters import Array, InvalidValue, require, require_kind, require_whole, require_within
+from beam.parameters import Array, InvalidType, InvalidValue, require_kind, require_whole, require_within
 from contact.flight.modal_flow import free_flow
 from contact.flight.polynomial_root import positive_roots
 from contact.laws import NewtonRestitution
@@ -116,7 +116,8 @@ class SingleImpactFamily(ABC):
 
     def __post_init__(self) -> None:
         require_kind("oscillator", self.oscillator, ImpactOscillator, "an ImpactOscillator")
-        require(self.oscillator.load is None, "load is given; it must be None for orbits with one collision")
+        if self.oscillator.load is not None:
+            raise InvalidValue("load is given; it must be None for orbits with one collision")
         self.oscillator.grazing_amplitude()  # the drive moves the tip
         require_whole("period", self.period, "drive periods")
 
@@ -193,11 +194,17 @@ def excess_of(p: float, rate: float) -> float:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class MaximalFamily(SingleImpactFamily):
-    """The orbits under Newton's law, in closed form; TypeError for an oscillator with another law."""
+    """The orbits under Newton's law with a constant restitution, in closed form.
+
+    TypeError is raised for an oscillator with another law, or whose restitution depends on the speed.
+    """
 
     def __post_init__(self) -> None:
         super().__post_init__()
         _ = self.oscillator.local_restitution, self.coefficients  # each mode that is kicked comes to rest
+        if self.oscillator.stop.law.table.size:
+            words = "must have a constant restitution here; KickFamily and Shooting take any law"
+            raise InvalidType("law of the stop", words)
 
     @classmethod
     def from_oscillator(

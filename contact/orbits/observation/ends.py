@@ -201,7 +201,8 @@ def fold_excess(strobed: StrobedMap[Any], period: int) -> float | None:
     else:
         words = "a StroboscopicMap or a NordmarkMap"
         oscillator = require_kind("strobed", strobed, StroboscopicMap, words).oscillator
-        if oscillator.stop.law.code == NEWTON:
+        law = oscillator.stop.law
+        if law.code == NEWTON and law.table.size == 0:  # a constant restitution
             family = MaximalFamily.from_oscillator(oscillator, period=period)
         else:
             one = Shooting(oscillator=oscillator, period=period)

@@ -79,7 +79,9 @@ class Approach:
     kick: Annotated[float, "kick of the mode-1 velocity over the approach velocity"] = math.nan
     contact_s: Annotated[float, "time in contact [s]"] = math.nan
     arc_s: Annotated[float, "time v/a to the top of the arc beyond the gap [s]"] = math.nan
-    peak_force_newton: Annotated[float, "largest contact force [N]; none under a law of restitution"] = math.nan
+    peak_force_newton: Annotated[float, "largest contact force [N]; none under a law of restitution"] = (
+        math.nan
+    )
     impacts: Annotated[int, "impacts in the collision"] = 0
     forced_by_ringing: Annotated[bool, "whether ringing alone reaches the gap; the kick is then in m/s"] = (
         False

@@ -61,7 +61,7 @@ WORDS = {
     "energy_to_higher_modes": "energy that the higher modes gain [J]",
     "energy_lost": "energy lost in the contact [J]",
     "impulse": "impulse of the plate [N s]",
-    "peak_force": "largest contact force [N]; none under a law of restitution",
+    "peak_force": "largest contact force [N]; none under Newton's law",
     "forced_by_ringing": "ringing made the touch; mode 1 alone would not reach the gap",
     "returns": "mode 1 comes back to the gap",
 }

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beam import InvalidValue
-from contact import ImpactOscillator, MaximalFamily, NewtonRestitution, simulate
+from contact import ContactLaw, ImpactOscillator, MaximalFamily, NewtonRestitution, simulate
 from contact.orbits import (
     Change,
     KickFamily,
@@ -65,10 +65,16 @@ class Prediction(ABC):
         """Derivatives of `values` by the named parameters and `extra`, shape (values.size, n_unknowns)."""
 
 
+def in_closed_form(law: ContactLaw) -> bool:
+    """Whether the orbits with one impact are known in closed form: under Newton's law with a constant."""
+    return isinstance(law, NewtonRestitution) and law.table.size == 0
+
+
 def family_of(oscillator: ImpactOscillator, period: int) -> MaximalFamily | KickFamily:
     """The orbits p_m by linear algebra: exact under Newton's law, close under any other."""
-    newton = isinstance(oscillator.stop.law, NewtonRestitution)
-    return (MaximalFamily if newton else KickFamily)(oscillator=oscillator, period=period)
+    return (MaximalFamily if in_closed_form(oscillator.stop.law) else KickFamily)(
+        oscillator=oscillator, period=period
+    )
 
 
 def shapes_changed(changes: Sequence[Change], count: int) -> Array:
@@ -135,7 +141,7 @@ class Transitions(Prediction):
         for i, (frequency, period) in enumerate(self.record.rows[:, :2]):
             there = replace(oscillator, drive=replace(oscillator.driven, frequency=float(frequency)))
             exact = Shooting(oscillator=there, period=int(period))
-            if isinstance(oscillator.stop.law, NewtonRestitution):
+            if in_closed_form(oscillator.stop.law):
                 linear = MaximalFamily(oscillator=there, period=int(period)).fold()
                 fold = exact.at_speed(linear.speed) if linear else None
             else:

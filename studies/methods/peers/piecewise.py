@@ -94,7 +94,8 @@ class Equations:
 
     def __init__(self, oscillator: ImpactOscillator, run: Run, tolerance: float) -> None:
         model, law, drive = oscillator.model, oscillator.stop.law, oscillator.drive
-        self.hard, self.hertz = law.code == NewtonRestitution.code, law.code == HertzContact.code
+        self.hard = law.code == NewtonRestitution.code and law.table.size == 0  # a constant restitution
+        self.hertz = law.code == HertzContact.code
         elastic = (self.hertz or law.code == LinearContact.code) and not any(law.numbers[1:])
         if not (self.hard or elastic) or oscillator.load is not None:
             raise InvalidType(

@@ -70,7 +70,8 @@ class ExtendedSpring:
 
     def __init__(self, oscillator: ImpactOscillator) -> None:
         law, model, drive = oscillator.stop.law, oscillator.model, oscillator.drive
-        self.hard, self.hertz = isinstance(law, NewtonRestitution), isinstance(law, HertzContact)
+        self.hard = isinstance(law, NewtonRestitution) and law.table.size == 0  # a constant restitution
+        self.hertz = isinstance(law, HertzContact)
         linear = isinstance(law, LinearContact) and law.damping == 0.0
         if not (self.hard or self.hertz or linear) or oscillator.load is not None:
             raise InvalidValue(
