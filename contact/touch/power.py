@@ -28,7 +28,7 @@ or the depth up to which the impulse of this force is below rounding.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import ClassVar
 
@@ -105,7 +105,8 @@ def plan_of(exponent: Fraction, damped: bool) -> np.ndarray:
     for power in sorted(powers):
         row_of(power)
     table = np.zeros((3, max(DASHPOT_SLOPE + 1, len(factors))))
-    table[NUMBERS, : DASHPOT_SLOPE + 1] = m, exponent, len(factors), *(rows[power] for power in powers)
+    numbers = m, float(exponent), len(factors), *(rows[power] for power in powers)
+    table[NUMBERS, : DASHPOT_SLOPE + 1] = numbers
     table[LEFT:, : len(factors)] = np.array(factors, dtype=float).reshape(-1, 2).T
     return table
 
@@ -180,17 +181,16 @@ class PowerContact(ContactLaw):
         restitution : float
             Above 0 and at most 1 [1].
         mass : float
-            m, the mass that meets the stop, above zero [kg].  A modal model meets it with 1/sum phi^2, which
-            `ModalModel.tip_mass` exceeds or falls short of while modes are left out.  Its restitution differs
-            from that of a free mass as far as its modes move during the contact.
+            m, the mass that meets the stop, above zero [kg].  The tip of a modal model has the mass
+            1/sum phi^2 over its modes; ``ModalModel.tip_mass`` is the limit for all modes.  As the modes
+            move during the contact, the tip leaves with another restitution than the free mass.
 
         Raises InvalidType or InvalidValue for wrong numbers.
         """
         elastic = PowerContact(stiffness=stiffness, exponent=exponent)
-        require_within("mass", mass, "kg", above=0)
-        rate = math.sqrt(0.5 * (elastic.exponent + 1.0) * stiffness * mass)
-        damping = 2.0 * damping_ratio(restitution) * rate
-        return PowerContact(stiffness=stiffness, exponent=exponent, damping=damping)
+        mass = require_within("mass", mass, "kg", above=0)
+        rate = math.sqrt(0.5 * (elastic.exponent + 1.0) * elastic.stiffness * mass)
+        return replace(elastic, damping=2.0 * damping_ratio(restitution) * rate)
 
 
 @kernel
