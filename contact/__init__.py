@@ -30,7 +30,7 @@ The files: the problem and its answer
     ``laws``            contact laws: `NewtonRestitution` (at once), `LinearContact`, `HertzContact`,
                         `HuntCrossley` (forces); `PowerContact` and `DelayedRestitution` (one mode) stand
                         in ``touch``
-    ``restitution``     `damping_ratio` of a restitution, and back; `restitution_from_bounces`
+    ``restitution``     `damping_ratio` of a restitution; `restitution_from_bounces`
     ``stop``            `Stop`: a gap and a law
     ``oscillator``      `ImpactOscillator`: a ``beam.ModalModel``, a stop and a drive; the equation of motion
     ``trajectory``      `State`, `Impacts`, `Trajectory`
@@ -80,12 +80,7 @@ from contact.maps.nordmark_orbits import MapFamily, MaximalOrbit, maximal_period
 from contact.maps.stroboscope import StrobedMap, StrobedOrbit, StroboscopicMap
 from contact.orbits.families.single_impact import MaximalFamily, SingleImpactOrbit
 from contact.oscillator import ImpactOscillator
-from contact.restitution import (
-    MeasuredRestitution,
-    damping_ratio,
-    restitution_from_bounces,
-    restitution_of_damping_ratio,
-)
+from contact.restitution import MeasuredRestitution, damping_ratio, restitution_from_bounces
 from contact.simulation import simulate
 from contact.stop import Stop
 from contact.touch.delayed import DelayedRestitution

@@ -122,22 +122,12 @@ class LinearContact(ContactLaw):
 
     @staticmethod
     def with_restitution(*, stiffness: float, restitution: float, mass: float) -> LinearContact:
-        """The law under which a free mass leaves with `restitution` times its approach speed, at any speed.
+        """The law under which a free `mass` m [kg] leaves with `restitution` times its approach speed.
 
-        With the damping ratio zeta of ``contact.damping_ratio``, c = 2 zeta sqrt(k m).
-
-        Parameters
-        ----------
-        stiffness : float
-            k of the law [N/m].
-        restitution : float
-            Above 0 and at most 1 [1].
-        mass : float
-            m, the mass that meets the stop, above zero [kg].  The tip of a modal model has the mass
-            1/sum phi^2 over its modes; ``ModalModel.tip_mass`` is the limit for all modes.  As the modes
-            move during the contact, the tip leaves with another restitution than the free mass.
-
-        Raises InvalidType or InvalidValue for wrong numbers.
+        `restitution` lies above 0 and is at most 1, and holds at every speed: c = 2 zeta sqrt(k m) with zeta
+        of ``contact.damping_ratio``.  The tip of a modal model meets the stop with the mass 1/sum phi^2 of
+        its modes; ``ModalModel.tip_mass`` is the limit for all modes.  If its modes move during the contact,
+        the tip leaves with another restitution than the free mass.
         """
         elastic = LinearContact(stiffness=stiffness)
         mass = require_within("mass", mass, "kg", above=0)

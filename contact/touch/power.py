@@ -42,32 +42,16 @@ from contact.laws import ContactLaw
 from contact.machine.compiled import kernel, part
 from contact.machine.vector_loops import LANES, next_modes, weighted_rows
 from contact.restitution import damping_ratio
-from contact.touch.hertz import (
-    CLOCK,
-    COSINE,
-    INVERSE,
-    ORDER,
-    PUSH,
-    RELAXED,
-    ROOT,
-    SINE,
-    SPEED,
-    TOLERANCE,
-    greatest_speed,
-    release_in,
-    series_size,
-    series_variable,
-    state,
-    work,
-)
+from contact.touch import hertz
+from contact.touch.hertz import CLOCK, COSINE, INVERSE, ORDER, PUSH, ROOT, SINE, SPEED, TOLERANCE
 from contact.touch.series import WINDOW, limited_by_force, log_longest
 from contact.trajectory import CONTACT, INSIDE, OUTSIDE
-
-__all__ = ["series_size", "series_variable", "state", "work"]  # as Hertz's law has them
 
 LAW, METHOD = "PowerContact", "power-series"
 REGIMES = (OUTSIDE, CONTACT, INSIDE)
 POWER = 4  # code of the law
+
+series_size, series_variable, state, work = hertz.series_size, hertz.series_variable, hertz.state, hertz.work
 
 MOST = WINDOW
 """Largest m: a mode moves at each order m of sigma, and `WINDOW` last orders limit a step."""
@@ -170,22 +154,10 @@ class PowerContact(ContactLaw):
     def with_restitution(
         *, stiffness: float, exponent: float, restitution: float, mass: float
     ) -> PowerContact:
-        """The law under which a free mass leaves with `restitution` times its approach speed, at any speed.
+        """The law under which a free `mass` m [kg] leaves with `restitution` times its approach speed.
 
-        With the damping ratio zeta of ``contact.damping_ratio``, c = 2 zeta sqrt((p + 1)/2 k m).
-
-        Parameters
-        ----------
-        stiffness, exponent : float
-            k [N/m^p] and p [1] of the law.
-        restitution : float
-            Above 0 and at most 1 [1].
-        mass : float
-            m, the mass that meets the stop, above zero [kg].  The tip of a modal model has the mass
-            1/sum phi^2 over its modes; ``ModalModel.tip_mass`` is the limit for all modes.  As the modes
-            move during the contact, the tip leaves with another restitution than the free mass.
-
-        Raises InvalidType or InvalidValue for wrong numbers.
+        `restitution` lies above 0 and is at most 1, and holds at every speed: c = 2 zeta sqrt((p + 1)/2 k m)
+        with zeta of ``contact.damping_ratio``.  `mass` is that of ``LinearContact.with_restitution``.
         """
         elastic = PowerContact(stiffness=stiffness, exponent=exponent)
         mass = require_within("mass", mass, "kg", above=0)
@@ -224,8 +196,8 @@ def product(x, y, n):
 
 
 @part
-def row_of(motion, series, number):
-    """The scalar series whose row is this number of the table."""
+def power(motion, series, number):
+    """The scalar series in the row that this number of the table names."""
     return series.scalars[int(motion.table[NUMBERS, number])]
 
 
@@ -238,11 +210,7 @@ def fill(motion, base, u, v, pushes, series):
     rows, sums, modes, w, scalars = series.rows, series.sums, motion.modes, motion.drive, series.scalars
     a, b, table, damping = motion.tip_sine, motion.tip_cosine, motion.table, motion.number1
     root, clock, push, lets_go = scalars[ROOT], scalars[CLOCK], scalars[PUSH], scalars[LETS_GO]
-    time, lever, rise = (
-        row_of(motion, series, TIME),
-        row_of(motion, series, LEVER),
-        row_of(motion, series, RISE),
-    )
+    time, lever, rise = power(motion, series, TIME), power(motion, series, LEVER), power(motion, series, RISE)
     at_v, fineness, products = LANES + modes.shape[1], table[NUMBERS, FINENESS], int(table[NUMBERS, PRODUCTS])
     sine, cosine = sine_cosine(w * base, 0.0)
     speed = tip_sum(motion, w * (a * cosine - b * sine), v)
@@ -272,9 +240,9 @@ def fill(motion, base, u, v, pushes, series):
 def slopes(motion, run, series, weights):
     """The series for the tangents: rho^(m-1) times 1, dN/dd, dN/dd', N, dN/dk and dN/dc."""
     k, c, rates, scalars = motion.number0, motion.number1, series.rows[:, SPEED], series.scalars
-    lever, rise = row_of(motion, series, LEVER), row_of(motion, series, RISE)
-    slope, dashpot = row_of(motion, series, SLOPE), row_of(motion, series, DASHPOT_SLOPE)
-    time, p = row_of(motion, series, TIME), motion.table[NUMBERS, EXPONENT]
+    lever, rise = power(motion, series, LEVER), power(motion, series, RISE)
+    slope, dashpot = power(motion, series, SLOPE), power(motion, series, DASHPOT_SLOPE)
+    time, p = power(motion, series, TIME), motion.table[NUMBERS, EXPONENT]
     pushes, half = 0.0 if run.regime == INSIDE else 1.0, 0.5 * (p - 1.0) * c
     for n in range(ORDER):
         weights.time[n], weights.force[n] = time[n], scalars[PUSH, n]
@@ -307,15 +275,17 @@ def farthest(motion, speed, root):
 @part
 def longest_step(motion, speed, series):
     """The sigma up to which the series holds: the last `WINDOW` orders of modes, rho and force are small."""
-    root, power, size = series.scalars[ROOT], math.inf, math.log(TOLERANCE) / ORDER
+    root, longest, size = series.scalars[ROOT], math.inf, math.log(TOLERANCE) / ORDER
     for n in range(ORDER - WINDOW + 1, ORDER + 1):
-        power = min(power, size + log_longest(greatest_speed(motion.modes, series.rows, n), n, speed))
+        longest = min(
+            longest, size + log_longest(hertz.greatest_speed(motion.modes, series.rows, n), n, speed)
+        )
         if root[n] != 0.0 and (root[0] != 0.0 or root[1] != 0.0):
             whole = log_longest(abs(root[n]), n, abs(root[0])) if root[0] != 0.0 else -math.inf
             linear = log_longest(abs(root[n]), n - 1, abs(root[1])) if root[1] != 0.0 else -math.inf
-            power = min(power, size + max(whole, linear))
+            longest = min(longest, size + max(whole, linear))
     s = limited_by_force(
-        math.exp(power), series.scalars[PUSH], ORDER - 1, math.sqrt(motion.inverse_mass), speed, _EDGE
+        math.exp(longest), series.scalars[PUSH], ORDER - 1, math.sqrt(motion.inverse_mass), speed, _EDGE
     )
     s = min(s, farthest(motion, speed, root))
     if root[1] < 0.0 < root[0]:  # stop well behind the release: without a force the terms give no bound
@@ -323,7 +293,7 @@ def longest_step(motion, speed, series):
     deep = max(root[0], horner(root, 1.0, 0.0, s)[0]) if s < math.inf else root[0]
     half = 0.5 * (motion.table[NUMBERS, EXPONENT] + 1.0)
     rate = motion.inverse_mass * motion.number1 * deep ** (motion.table[NUMBERS, FINENESS] * half - 1.0)
-    return min(s, RELAXED / rate) if rate > 0.0 else s
+    return min(s, hertz.RELAXED / rate) if rate > 0.0 else s
 
 
 @kernel
@@ -340,7 +310,7 @@ def step(motion, run, u, v, limit, series):
     s = longest_step(motion, run.memory1, series)
     if not (0.0 < s < math.inf):
         return math.nan, math.nan, CONTACT
-    end, following = release_in(root, s), regime
+    end, following = hertz.release_in(root, s), regime
     if end >= 0.0:
         s, following = end, OUTSIDE
     if motion.number1 > 0.0:

@@ -117,8 +117,6 @@ CONTACT = (
                   restitution=each(0.0, -1e-12, 1.0000001))),
     of(contact.damping_ratio, dict(restitution=0.5), kind=dict(restitution=None),
        value=dict(restitution=each(0.0, -0.1, 1.0000001, NAN))),
-    of(contact.restitution_of_damping_ratio, dict(damping_ratio=0.5), kind=dict(damping_ratio="weak"),
-       value=dict(damping_ratio=each(-1e-300, NAN, INF))),
     of(contact.restitution_from_bounces, dict(times=[0.0, 1.0, 1.5, 1.76]),
        kind=dict(times=each("now", None)),
        value=dict(times=each([0.0, 1.0], [0.0, 1.0, 1.0], [0.0, 1.0, 0.5], [[0.0, 1.0, 1.5]],
