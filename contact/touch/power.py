@@ -1,26 +1,23 @@
 """A power of the depth with a dashpot: N = max(0, k d^p + c d^((p-1)/2) d') for d > 0 (``PowerContact``).
 
-For p = 3/2 this is the law of Y. Tsuji, T. Tanaka and T. Ishida (Powder Technol. 71 (1992) 239), cut at zero
-force.  In w = d^((p+1)/2) and dtau = d^((p-1)/2) dt a free mass m is a linear oscillator,
+In w = d^((p+1)/2) and dtau = d^((p-1)/2) dt a free mass m is a linear oscillator at every speed,
 
-    w'' + (c/m) w' + (p+1)/2 (k/m) w = 0,      N = -2 m/(p+1) d^((p-1)/2) w'',
-
-so that its restitution is that of a spring and dashpot at every speed (``contact.restitution``).
+    w'' + (c/m) w' + (p+1)/2 (k/m) w = 0,      N = -2 m/(p+1) d^((p-1)/2) w''.
 
 The force has no Taylor series at d = 0.  As in ``contact.touch.hertz`` the motion is computed in a variable
 sigma in which all right-hand sides are polynomials.  With d = rho^m, a = m p and b = m (p-1)/2,
 
     dt/dsigma = rho^(m-1),  drho/dsigma = d'/m,  du/dsigma = rho^(m-1) v,
-    dv/dsigma = rho^(m-1) (g - c_k v - omega^2 u) - phi_k rho^l G,      G = k rho^g + c d',
+    dv/dsigma = rho^(m-1) (g - c_k v - omega^2 u) - phi_k rho^l G,      G = k rho^h + c d',
 
-with l = b + m - 1 and g = b + m, or without damping l = a - 1 and g = m.  The least m is taken for which a
-and, with damping, b are whole numbers.  The powers come from each other by products of two series.  The
-law's table holds the plan of these products, so that no kernel branches by exponent.
+with l = b + m - 1 and h = b + m, or without damping l = a - 1 and h = m.  The least m is taken for which a
+and, with damping, b are whole numbers.  The powers come from each other by products of two series, by a plan
+in the law's table, so that no kernel branches by exponent.
 
 With damping the contact lets go where G falls to zero, before d does (regime INSIDE).  There the tip moves
 without a force, until G rises through zero again, or the tip leaves where rho falls to zero.
 
-A force enters the speeds at the order e of sigma, 2 (b + m) or b + m.  If e is above `WINDOW`, the terms of a
+A force enters the speeds at the order 2 (b + m), or b + m, of sigma.  If it is above `WINDOW`, the terms of a
 step could all be small although the force is not.  Such a step reaches at most thrice the rho of its start,
 or the depth up to which the impulse of this force is below rounding.
 """
@@ -50,11 +47,9 @@ from contact.trajectory import CONTACT, INSIDE, OUTSIDE
 LAW, METHOD = "PowerContact", "power-series"
 REGIMES = (OUTSIDE, CONTACT, INSIDE)
 POWER = 4  # code of the law
+MOST = WINDOW  # largest m: a mode moves at each order m of sigma, and `WINDOW` last orders limit a step
 
 series_size, series_variable, state, work = hertz.series_size, hertz.series_variable, hertz.state, hertz.work
-
-MOST = WINDOW
-"""Largest m: a mode moves at each order m of sigma, and `WINDOW` last orders limit a step."""
 
 LETS_GO, ONE = 4, 8
 """Rows of the scalar series beside those of Hertz's law: G; the power zero, then the products of the plan."""
@@ -62,11 +57,9 @@ LETS_GO, ONE = 4, 8
 NUMBERS, LEFT, RIGHT = range(3)
 """Rows of the table: numbers; the two factors of each product, as rows of the scalar series."""
 
-FINENESS, EXPONENT, PRODUCTS, TIME, LEVER, RISE, SLOPE, DASHPOT_SLOPE = range(8)
-"""Numbers of the table: m, p, the number of products, and the rows that hold rho to the powers m - 1, l, g,
-a - 1 and b - 1."""
-
-_EDGE = TOLERANCE ** (1.0 / ORDER)
+FINENESS, EXPONENT, EFFECT, PRODUCTS, TIME, LEVER, RISE, SLOPE, DASHPOT_SLOPE = range(9)
+"""Numbers of the table: m, p, m (p+1)/2, the number of products, and the rows that hold rho to the powers
+m - 1, l, h, a - 1 and b - 1."""
 
 
 def plan_of(exponent: Fraction, damped: bool) -> np.ndarray:
@@ -80,8 +73,7 @@ def plan_of(exponent: Fraction, damped: bool) -> np.ndarray:
         """The row that holds rho to this power, after the products that it needs."""
         if power not in rows:
             one = next((x for x in rows if x > 0 and power - x in rows), power // 2)
-            pair = row_of(one), row_of(power - one)
-            factors.append(pair)
+            factors.append((row_of(one), row_of(power - one)))
             rows[power] = ONE + len(factors)
         return rows[power]
 
@@ -89,9 +81,8 @@ def plan_of(exponent: Fraction, damped: bool) -> np.ndarray:
     for power in sorted(powers):
         row_of(power)
     table = np.zeros((3, max(DASHPOT_SLOPE + 1, len(factors))))
-    numbers = m, float(exponent), len(factors), *(rows[power] for power in powers)
-    table[NUMBERS, : DASHPOT_SLOPE + 1] = numbers
-    table[LEFT:, : len(factors)] = np.array(factors, dtype=float).reshape(-1, 2).T
+    numbers = m, float(exponent), float(m * (1 + half)), len(factors), *(rows[power] for power in powers)
+    table[NUMBERS, : len(numbers)], table[LEFT:, : len(factors)] = numbers, np.reshape(factors, (-1, 2)).T
     return table
 
 
@@ -101,7 +92,7 @@ class PowerContact(ContactLaw):
     """Power of the depth with a dashpot: N = max(0, k d^p + c d^((p-1)/2) d') for d > 0.
 
     For p = 3/2 it is the law of Y. Tsuji, T. Tanaka and T. Ishida (Powder Technol. 71 (1992) 239), cut at
-    zero force.  The restitution of a free mass does not depend on its speed, for any exponent.
+    zero force.  The restitution of a free mass is the same at every speed, for any exponent.
 
     Parameters
     ----------
@@ -125,24 +116,20 @@ class PowerContact(ContactLaw):
         given = require_within("exponent of the contact", self.exponent, "[1]", low=1.0, high=3.0)
         nearest = self._fraction
         if abs(given - float(nearest)) > 4.0 * EPS * given:
-            words = "(p - 1)/2, with damping, must be" if self.damping > 0.0 else "without damping it must be"
-            raise InvalidValue(
-                "exponent of the contact",
-                f"is {given!r} [1]; {words} a fraction with a denominator of at most {MOST}, and the nearest "
-                f"valid exponent is {nearest} = {float(nearest)!r}",
-            )
+            one = "(p - 1)/2, with damping," if self.damping > 0.0 else "it, without damping,"
+            words = f"{one} must be a fraction with a denominator of at most {MOST}"
+            near = f"the nearest valid exponent is {nearest} = {float(nearest)!r}"
+            raise InvalidValue("exponent of the contact", f"is {given!r} [1]; {words}, and {near}")
 
     @property
     def _fraction(self) -> Fraction:
         """The valid exponent next to the given one."""
-        p = Fraction(float(self.exponent))
-        return (
-            1 + 2 * ((p - 1) / 2).limit_denominator(MOST) if self.damping > 0.0 else p.limit_denominator(MOST)
-        )
+        part = 2 if self.damping > 0.0 else 1
+        return 1 + part * (Fraction(float(self.exponent) - 1.0) / part).limit_denominator(MOST)
 
     @property
     def adjustable(self) -> tuple[float, ...]:
-        """Stiffness and damping; without damping only the stiffness."""
+        """Stiffness and damping; only the stiffness without damping, as m may differ with it."""
         return self.numbers if self.damping > 0.0 else self.numbers[:1]
 
     @property
@@ -168,22 +155,20 @@ class PowerContact(ContactLaw):
 @kernel
 def force(numbers, depth, rate):
     """N at penetration `depth` >= 0 and its `rate` [N]."""
-    half = 0.5 * (numbers.table[NUMBERS, EXPONENT] - 1.0)
-    lever = depth**half
+    lever = depth ** (0.5 * numbers.table[NUMBERS, EXPONENT] - 0.5)
     return max(0.0, lever * (numbers.number0 * lever * depth + numbers.number1 * rate))
 
 
 @kernel
 def stiffness(numbers, depth, rate):
     """dN/dd [N/m] and dN/dd' [N s/m]."""
-    half = 0.5 * (numbers.table[NUMBERS, EXPONENT] - 1.0)
-    lever = depth**half
-    if numbers.number0 * lever * depth + numbers.number1 * rate <= 0.0:
+    p = numbers.table[NUMBERS, EXPONENT]
+    lever = depth ** (0.5 * p - 0.5)
+    spring, dashpot = numbers.number0 * lever, numbers.number1 * rate
+    if spring * depth + dashpot <= 0.0:
         return 0.0, 0.0
-    slope = (2.0 * half + 1.0) * numbers.number0 * lever * lever
-    if half > 0.0 and numbers.number1 > 0.0:
-        slope += half * numbers.number1 * lever / depth * rate
-    return slope, numbers.number1 * lever
+    bend = 0.5 * (p - 1.0) * lever * dashpot / depth if dashpot != 0.0 else 0.0
+    return p * spring * lever + bend, numbers.number1 * lever
 
 
 @part
@@ -227,11 +212,10 @@ def fill(motion, base, u, v, pushes, series):
         push[n] = product(lever, lets_go, n) if pushes else 0.0
         inverse, start = INVERSE[n + 1], time[0]
         weighted_rows(time, n, -1, rows, n, sums)
-        root[n + 1] = inverse / fineness * speed
-        clock[n + 1] = inverse * time[n]
+        root[n + 1], clock[n + 1] = inverse / fineness * speed, inverse * time[n]
         tip = next_modes(modes, sums, start, inverse, time[n], inverse * push[n], n, rows)
-        turned = w * inverse * (sums[COSINE] + start * cosine), -w * inverse * (sums[SINE] + start * sine)
-        sine, cosine = turned
+        turn = w * inverse
+        sine, cosine = turn * (sums[COSINE] + start * cosine), -turn * (sums[SINE] + start * sine)
         speed = w * (a * cosine - b * sine) + tip
         rows[n + 1, SPEED], rows[n + 1, SINE], rows[n + 1, COSINE] = speed, sine, cosine
 
@@ -239,13 +223,12 @@ def fill(motion, base, u, v, pushes, series):
 @kernel
 def slopes(motion, run, series, weights):
     """The series for the tangents: rho^(m-1) times 1, dN/dd, dN/dd', N, dN/dk and dN/dc."""
-    k, c, rates, scalars = motion.number0, motion.number1, series.rows[:, SPEED], series.scalars
-    lever, rise = power(motion, series, LEVER), power(motion, series, RISE)
+    k, c, p, rates = motion.number0, motion.number1, motion.table[NUMBERS, EXPONENT], series.rows[:, SPEED]
+    time, lever, rise = power(motion, series, TIME), power(motion, series, LEVER), power(motion, series, RISE)
     slope, dashpot = power(motion, series, SLOPE), power(motion, series, DASHPOT_SLOPE)
-    time, p = power(motion, series, TIME), motion.table[NUMBERS, EXPONENT]
     pushes, half = 0.0 if run.regime == INSIDE else 1.0, 0.5 * (p - 1.0) * c
     for n in range(ORDER):
-        weights.time[n], weights.force[n] = time[n], scalars[PUSH, n]
+        weights.time[n], weights.force[n] = time[n], series.scalars[PUSH, n]
         weights.depth[n] = pushes * (p * k * slope[n] + half * product(dashpot, rates, n))
         weights.rate[n] = pushes * c * lever[n]
         weights.first[n] = pushes * product(lever, rise, n)
@@ -256,17 +239,12 @@ def slopes(motion, run, series, weights):
 @part
 def farthest(motion, speed, root):
     """The sigma up to which a step sees each force that enters the speeds beyond `WINDOW` orders."""
-    m, p, phi = (
-        motion.table[NUMBERS, FINENESS],
-        motion.table[NUMBERS, EXPONENT],
-        math.sqrt(motion.inverse_mass),
-    )
-    half, negligible = 0.5 * (p + 1.0), math.inf
-    allowed = TOLERANCE * speed * half / phi
-    if m * 2.0 * half > WINDOW:  # d'/2 times the impulse k d^(p+1)/((p+1)/2)/d'
-        negligible = (2.0 * allowed * m * abs(root[1]) / motion.number0) ** (0.5 / (m * half))
-    if motion.number1 > 0.0 and m * half > WINDOW:  # c d^((p+1)/2)/((p+1)/2)
-        negligible = min(negligible, (allowed / motion.number1) ** (1.0 / (m * half)))
+    m, p, e = motion.table[NUMBERS, FINENESS], motion.table[NUMBERS, EXPONENT], motion.table[NUMBERS, EFFECT]
+    allowed, negligible = 0.5 * (p + 1.0) * TOLERANCE * speed / math.sqrt(motion.inverse_mass), math.inf
+    if 2.0 * e > WINDOW:  # the impulse k d^(p+1)/((p+1) d'), d' = m root[1]
+        negligible = (2.0 * allowed * m * abs(root[1]) / motion.number0) ** (0.5 / e)
+    if motion.number1 > 0.0 and e > WINDOW:  # 2 c d^((p+1)/2)/(p+1)
+        negligible = min(negligible, (allowed / motion.number1) ** (1.0 / e))
     way = max(2.0 * root[0], negligible - root[0])
     s = way / abs(root[1]) if root[1] != 0.0 else math.inf
     return min(s, math.sqrt(way / abs(root[2]))) if root[2] != 0.0 and way > 0.0 else s
@@ -277,22 +255,19 @@ def longest_step(motion, speed, series):
     """The sigma up to which the series holds: the last `WINDOW` orders of modes, rho and force are small."""
     root, longest, size = series.scalars[ROOT], math.inf, math.log(TOLERANCE) / ORDER
     for n in range(ORDER - WINDOW + 1, ORDER + 1):
-        longest = min(
-            longest, size + log_longest(hertz.greatest_speed(motion.modes, series.rows, n), n, speed)
-        )
+        top = hertz.greatest_speed(motion.modes, series.rows, n)
+        longest = min(longest, size + log_longest(top, n, speed))
         if root[n] != 0.0 and (root[0] != 0.0 or root[1] != 0.0):
             whole = log_longest(abs(root[n]), n, abs(root[0])) if root[0] != 0.0 else -math.inf
             linear = log_longest(abs(root[n]), n - 1, abs(root[1])) if root[1] != 0.0 else -math.inf
             longest = min(longest, size + max(whole, linear))
-    s = limited_by_force(
-        math.exp(longest), series.scalars[PUSH], ORDER - 1, math.sqrt(motion.inverse_mass), speed, _EDGE
-    )
+    push, mobility, edge = series.scalars[PUSH], math.sqrt(motion.inverse_mass), TOLERANCE ** (1.0 / ORDER)
+    s = limited_by_force(math.exp(longest), push, ORDER - 1, mobility, speed, edge)
     s = min(s, farthest(motion, speed, root))
     if root[1] < 0.0 < root[0]:  # stop well behind the release: without a force the terms give no bound
         s = min(s, -4.0 * root[0] / root[1])
     deep = max(root[0], horner(root, 1.0, 0.0, s)[0]) if s < math.inf else root[0]
-    half = 0.5 * (motion.table[NUMBERS, EXPONENT] + 1.0)
-    rate = motion.inverse_mass * motion.number1 * deep ** (motion.table[NUMBERS, FINENESS] * half - 1.0)
+    rate = motion.inverse_mass * motion.number1 * deep ** (motion.table[NUMBERS, EFFECT] - 1.0)
     return min(s, hertz.RELAXED / rate) if rate > 0.0 else s
 
 
@@ -303,8 +278,9 @@ def step(motion, run, u, v, limit, series):
     if run.memory1 < 0.0:
         run.memory1 = speed_scale(motion, u, v)
     if run.memory0 < 0.0:
-        depth = max(0.0, tip_state(motion, run.clock, u, v)[0])
-        run.memory0 = depth ** (1.0 / motion.table[NUMBERS, FINENESS])
+        run.memory0 = max(0.0, tip_state(motion, run.clock, u, v)[0]) ** (
+            1.0 / motion.table[NUMBERS, FINENESS]
+        )
     root[0], regime = run.memory0, run.regime
     fill(motion, run.clock, u, v, regime == CONTACT, series)
     s = longest_step(motion, run.memory1, series)
