@@ -116,7 +116,7 @@ class PowerContact(ContactLaw):
         given = require_within("exponent of the contact", self.exponent, "[1]", low=1.0, high=3.0)
         nearest = self._fraction
         if abs(given - float(nearest)) > 4.0 * EPS * given:
-            one = "(p - 1)/2, with damping," if self.damping > 0.0 else "it, without damping,"
+            one = "with damping (p - 1)/2" if self.damping > 0.0 else "without damping it"
             words = f"{one} must be a fraction with a denominator of at most {MOST}"
             near = f"the nearest valid exponent is {nearest} = {float(nearest)!r}"
             raise InvalidValue("exponent of the contact", f"is {given!r} [1]; {words}, and {near}")
@@ -188,10 +188,9 @@ def power(motion, series, number):
 
 @part
 def fill(motion, base, u, v, pushes, series):
-    """The Taylor coefficients in sigma of a contact that is at (u, v) at drive time `base` [s].
+    """The Taylor coefficients in sigma from (u, v) at drive time `base` [s], with or without the force.
 
-    On entry scalars[ROOT, 0] holds rho.  Without force if `pushes` is False.
-    """
+    On entry scalars[ROOT, 0] holds rho."""
     rows, sums, modes, w, scalars = series.rows, series.sums, motion.modes, motion.drive, series.scalars
     a, b, table, damping = motion.tip_sine, motion.tip_cosine, motion.table, motion.number1
     root, clock, push, lets_go = scalars[ROOT], scalars[CLOCK], scalars[PUSH], scalars[LETS_GO]
