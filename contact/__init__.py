@@ -28,8 +28,10 @@ Words
 The files: the problem and its answer
     ``drive``           base motion, `HarmonicDrive`
     ``laws``            contact laws: `NewtonRestitution` (at once), `LinearContact`, `HertzContact`,
-                        `HuntCrossley` (forces); `DelayedRestitution` (one mode) stands in ``touch``
+                        `HuntCrossley` (forces); `PowerContact` and `DelayedRestitution` (one mode) stand
+                        in ``touch``
     ``speed_table``     functions of the approach speed, such as a restitution, as tables
+    ``restitution``     `damping_ratio` of a restitution; `restitution_from_bounces`
     ``stop``            `Stop`: a gap and a law
     ``oscillator``      `ImpactOscillator`: a ``beam.ModalModel``, a stop and a drive; the equation of motion
     ``trajectory``      `State`, `Impacts`, `Trajectory`
@@ -79,9 +81,11 @@ from contact.maps.nordmark_orbits import MapFamily, MaximalOrbit, maximal_period
 from contact.maps.stroboscope import StrobedMap, StrobedOrbit, StroboscopicMap
 from contact.orbits.families.single_impact import MaximalFamily, SingleImpactOrbit
 from contact.oscillator import ImpactOscillator
+from contact.restitution import MeasuredRestitution, damping_ratio, restitution_from_bounces
 from contact.simulation import simulate
 from contact.stop import Stop
 from contact.touch.delayed import DelayedRestitution
+from contact.touch.power import PowerContact
 from contact.trajectory import ImpactKind, Impacts, Regime, State, Trajectory
 
 __version__ = "0.9.0"

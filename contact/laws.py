@@ -7,7 +7,8 @@ With the penetration d = x - gap [m] and its rate d' [m/s], the stop pushes the 
 * Force laws: ``LinearContact``, N = max(0, k d + c d').  With a dashpot (c > 0) the force vanishes before the
   tip has left the wall: the contact lets go inside, and may close again there.  ``HertzContact``, N = k
   d^(3/2) (H. Hertz, J. reine angew. Math. 92 (1882) 156), and ``HuntCrossley``, N = k d^(3/2) (1 + chi d')
-  (K. H. Hunt, F. R. E. Crossley, J. Appl. Mech. 42 (1975) 440), which vanishes only at d = 0.
+  (K. H. Hunt, F. R. E. Crossley, J. Appl. Mech. 42 (1975) 440), which vanishes only at d = 0.  Other powers
+  of d, with a restitution that holds at every speed, are ``PowerContact``.
 
 Compiled code sees no objects: a law gives it a small integer, two numbers and a table (`code`, `numbers`,
 `table`).  ``contact.touch`` has the compiled part of each law, and says how to add one.
@@ -23,6 +24,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from beam.parameters import final, require_within, suspect
+from contact.restitution import damping_ratio
 from contact.speed_table import SPEEDS, Points, SpeedFunction, raised, require_points, require_speeds, sampled
 
 NEWTON, LINEAR, HERTZ = 0, 1, 2
@@ -163,6 +165,21 @@ class LinearContact(ContactLaw):
     code: ClassVar[int] = LINEAR
     units: ClassVar[dict[str, str]] = {"stiffness": "N/m", "damping": "N s/m"}
 
+    @staticmethod
+    def with_restitution(*, stiffness: float, restitution: float, mass: float) -> LinearContact:
+        """The law under which a free `mass` m [kg] leaves with `restitution` times its approach speed.
+
+        `restitution` lies above 0 and is at most 1, and holds at every speed: c = 2 zeta sqrt(k m) with zeta
+        of ``contact.damping_ratio``.  The tip of a modal model meets the stop with the mass 1/sum phi^2 of
+        its modes; ``ModalModel.tip_mass`` is the limit for all modes.  If its modes move during the contact,
+        the tip leaves with another restitution than the free mass.
+        """
+        elastic = LinearContact(stiffness=stiffness)
+        mass = require_within("mass", mass, "kg", above=0)
+        return replace(
+            elastic, damping=2.0 * damping_ratio(restitution) * math.sqrt(elastic.stiffness * mass)
+        )
+
 
 @final
 @dataclass(frozen=True, kw_only=True)
@@ -240,7 +257,9 @@ class HuntCrossley(ContactLaw):
     def with_restitution(*, stiffness: float, restitution: float, velocity: float) -> HuntCrossley:
         """The law under which a free mass with approach `velocity` [m/s] leaves with `restitution` times it.
 
-        `restitution` lies above 0 and is at most 1; the relation is exact, for any exponent of d.
+        `restitution` lies above 0 and is at most 1; the relation is exact, for any exponent of d.  It holds
+        at this speed only: slower masses leave with more of their speed, faster ones with less.  Under
+        ``PowerContact.with_restitution`` the restitution holds at every speed.
         """
         e = require_within("restitution", restitution, "[1]", above=0, high=1)
         require_within("velocity", velocity, "m/s", above=0)

@@ -59,7 +59,8 @@ UNITS = {field: unit for unit, fields in FIELDS.items() for field in fields.spli
 
 RESULTS = {
     "beam": "Backbone ExactModes FiniteRotation PeriodicMotion ShapesAlong SpringMesh",
-    "contact": "Band Collision Impacts MaximalOrbit SingleImpactOrbit StrobedOrbit Trajectory",
+    "contact": "Band Collision Impacts MaximalOrbit MeasuredRestitution SingleImpactOrbit StrobedOrbit "
+    "Trajectory",
     "orbits": "Branch Event Exponents Kick MotionDerivatives OrbitDerivatives OrbitDiagram OrbitEnd "
     "PeriodicOrbit ScannedColumn Settled SingleImpactOrbit",
     "integrators": "Run",

@@ -1,6 +1,6 @@
 """In touch with the stop: one file a law, chosen by the table `TOUCHES`.
 
-`newton`, `delayed`, `linear`, `hertz`   the laws
+`newton`, `delayed`, `linear`, `hertz`, `power`   the laws
 `passage`                                a touch from strike to release, under any law, and its record
 `series`, `time_series`                  power series of a contact: what force laws share; in time
 `exchange`                               work, impulse and largest force of a step
@@ -72,7 +72,7 @@ from typing import Any, TypeVar
 
 from contact.laws import HERTZ, LINEAR, NEWTON
 from contact.machine.compiled import part
-from contact.touch import delayed, hertz, linear, newton, series, time_series
+from contact.touch import delayed, hertz, linear, newton, power, series, time_series
 
 Function = TypeVar("Function", bound=Callable[..., object])
 
@@ -89,6 +89,7 @@ TOUCHES = {
     delayed.DELAYED: offered(delayed),
     LINEAR: offered(linear),
     HERTZ: offered(hertz),
+    power.POWER: offered(power),
 }
 """The laws by their codes."""
 

@@ -32,13 +32,13 @@ class Series(NamedTuple):
 
     rows: np.ndarray  # coefficients of the modes, row n of order n, shape (order + 1, columns)
     sums: np.ndarray  # shape (columns,)
-    scalars: np.ndarray  # series of single numbers, rows named by each law, shape (8, order + 1)
+    scalars: np.ndarray  # series of single numbers, rows named by each law, shape (24, order + 1)
 
 
 @kernel
 def new_series(order, columns):
     """A workspace of zeros."""
-    return Series(aligned(order + 1, columns), aligned(1, columns)[0], np.zeros((8, order + 1)))
+    return Series(aligned(order + 1, columns), aligned(1, columns)[0], np.zeros((24, order + 1)))
 
 
 @part

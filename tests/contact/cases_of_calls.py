@@ -21,6 +21,7 @@ LAWS: dict[str, contact.ContactLaw] = {
     "dashpot": contact.LinearContact(stiffness=1e7, damping=100.0),
     "hertz": contact.HertzContact(stiffness=1e9),
     "hunt-crossley": contact.HuntCrossley(stiffness=1e9, dissipation=0.3),
+    "power": contact.PowerContact(stiffness=1e9, exponent=1.5, damping=1000.0),
 }
 EXTREME: dict[str, contact.ContactLaw] = {
     "plastic": contact.NewtonRestitution(local_restitution=0.0),
@@ -34,6 +35,9 @@ EXTREME: dict[str, contact.ContactLaw] = {
     "overdamped": contact.LinearContact(stiffness=1e5, damping=1e5),
     "softest hertz": contact.HertzContact(stiffness=1e-300),
     "stiffest hertz": contact.HertzContact(stiffness=1e20),
+    "softest power": contact.PowerContact(stiffness=1e-300, exponent=2.75, damping=1e-300),
+    "stiffest power": contact.PowerContact(stiffness=1e20, exponent=1.25),
+    "overdamped power": contact.PowerContact(stiffness=1e5, exponent=1.5, damping=1e6),
     "dissipative": contact.HuntCrossley(stiffness=1e9, dissipation=100.0),
     "dissipative and soft": contact.HuntCrossley(stiffness=1e5, dissipation=1e6),
     "creeping": contact.HuntCrossley(stiffness=1e9, dissipation=3e3),

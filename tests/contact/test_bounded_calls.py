@@ -35,7 +35,7 @@ TWELVE = ("born", "fold_of", "orbit_end", "orbit_exponents")
 """Calls that the long form makes with twelve modes too: each of them once took ten seconds and more."""
 
 WITHOUT_A_LAW = {"band", "bands", "before_collision", "maximal_period", "maximal_periods"}
-WITHOUT_A_LAW |= {"PeriodicOrbit.failure"}
+WITHOUT_A_LAW |= {"PeriodicOrbit.failure", "damping_ratio", "restitution_from_bounces"}
 """Closed forms of the letter's map and of flights, and a method that makes an error."""
 COMPUTING = ("KickFamily", "PeriodicOrbit", "Shooting", "StroboscopicMap")
 

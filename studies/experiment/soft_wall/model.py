@@ -36,6 +36,7 @@ class Kick:
     closed_form: Annotated[float | None, "kick in closed form [m/s]; none for the beam"]
     soft_law: Annotated[float, "kick of a soft touch [m/s]"]
     hard_law: Annotated[float, "kick of a hard wall [m/s]"]
+    peak_force: Annotated[float, "largest contact force [N]; in Eq. (1) per unit mass of the mode"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -72,17 +73,19 @@ class Beam:
 
 def kicks_of(wall: SoftWall, excesses: np.ndarray) -> list[Kick]:
     """The simulated kicks of a wall, the closed form and the two power laws."""
+    found = [(e, first_collision(wall.struck.with_excess(e))) for e in excesses.tolist()]
     return [
         Kick(
             case="lossless",
             hardness=wall.hardness,
             excess=e,
-            kick_velocity=first_collision(wall.struck.with_excess(e)).kick_velocity,
+            kick_velocity=one.kick_velocity,
             closed_form=wall.kick(e),
             soft_law=wall.soft_law(e),
             hard_law=wall.hard_law(e),
+            peak_force=one.peak_force,
         )
-        for e in excesses.tolist()
+        for e, one in found
     ]
 
 
@@ -184,11 +187,12 @@ def beam_of(scene: Scene, frequency: float, excesses: Sequence[float]) -> tuple[
             case="beam",
             hardness=None,
             excess=e,
-            kick_velocity=collision(e).kick_velocity,
+            kick_velocity=one.kick_velocity,
             closed_form=None,
             soft_law=hertz_kick(oscillator, e),
             hard_law=plateau * approach_speed(frequency, oscillator.stop.gap, e),
+            peak_force=one.peak_force,
         )
-        for e in excesses
+        for e, one in ((e, collision(e)) for e in excesses)
     ]
     return beam, kicks

@@ -18,6 +18,7 @@ from studies.physics.least_model import LADDER, REFERENCE
 from studies.shell.scene import Scene, beam_at, damping_of, model_of, modes_of, single_mode_at
 
 IN_WORDS = {"newton": "Newton", "linear": "linear", "hertz": "Hertz", "hunt_crossley": "Hunt and Crossley"}
+IN_WORDS["tsuji"] = "Tsuji"
 LAWS = tuple(IN_WORDS)
 MODES = (*LADDER, REFERENCE)
 MESHES = (2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96)

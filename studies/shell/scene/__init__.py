@@ -30,6 +30,7 @@ from contact import (
     NewtonRestitution,
     NonlinearMode,
     NordmarkMap,
+    PowerContact,
     Stop,
     band,
 )
@@ -37,6 +38,9 @@ from studies import ROOT, letter
 from studies.shell.programs import COMMAND
 from studies.shell.scene.key import OPEN as OPEN
 from studies.shell.scene.key import SceneError, shown
+from studies.shell.scene.law import approach_speed as approach_speed
+from studies.shell.scene.law import contact_law_of
+from studies.shell.scene.law import hertz_of as hertz_of
 from studies.shell.scene.spring import READOUT as READOUT
 from studies.shell.scene.spring import (
     backbone_of,
@@ -126,53 +130,6 @@ def harmonic(scene: Scene) -> Scene:
     if scene.drive.kind != "harmonic":
         raise SceneError(f"drive.kind is {scene.drive.kind}; this study needs a harmonic drive")
     return scene
-
-
-def approach_speed(frequency: float, gap: float, excess: float) -> float:
-    """Tip velocity at the stop, steady motion at excess e above 0: 2 pi f gap sqrt((1 + e)^2 - 1) [m/s]."""
-    return 2.0 * math.pi * frequency * gap * math.sqrt(excess * (2.0 + excess))
-
-
-def hertz_of(scene: Scene) -> HertzContact:
-    """Hertz's law for the ball and the plate of the scene."""
-    return scene.make(
-        HertzContact.of_bodies,
-        {
-            "radius": "tip.ball_radius_m",
-            "youngs_modulus": "tip.ball_young_modulus_pa",
-            "poissons_ratio": "tip.ball_poisson_ratio",
-            "other_modulus": "tip.plate_young_modulus_pa",
-            "other_ratio": "tip.plate_poisson_ratio",
-        },
-    )
-
-
-def contact_law_of(scene: Scene) -> ContactLaw:
-    """The contact law of the scene.
-
-    A linear contact whose stiffness is left open (0) gets k = M (pi/t_c)^2, M the mass of ball and mount and
-    t_c its contact time under Hertz's law at the approach speed of the letter's Fig. 4.
-    """
-    law, stiffness = scene.contact.law, scene.contact.stiffness_n_per_m
-    if law == "hertz":
-        return hertz_of(scene)
-    if law == "newton":
-        return scene.make(NewtonRestitution, {"local_restitution": "contact.local_restitution"})
-    if law == "hunt_crossley":
-        keys = {"dissipation": "contact.dissipation_s_per_m"}
-        return scene.make(HuntCrossley, keys, stiffness=hertz_of(scene).stiffness)
-    if stiffness == 0.0:
-        mass = scene.modal_data.tip_mass_kg if scene.spring.kind == "modal_data" else scene.tip.mass_kg
-        if not mass > 0:
-            raise SceneError(
-                "contact.stiffness_n_per_m is 0, to be found from the contact time of the ball, but the "
-                "ball has no mass: give the stiffness or the mass above zero"
-            )
-        middle = sorted(scene.drive.frequencies_hz)[len(scene.drive.frequencies_hz) // 2]
-        speed = approach_speed(middle, scene.stop.gap_m, letter.TIME_TRACE_EXCESS)
-        stiffness = mass * (math.pi / hertz_of(scene).contact_time(mass, speed)) ** 2
-    keys = {"stiffness": "contact.stiffness_n_per_m", "damping": "contact.damping_ns_per_m"}
-    return scene.make(LinearContact, keys, stiffness=stiffness)
 
 
 def _on_stop(scene: Scene, model: ModalModel, law: ContactLaw, frequency: float) -> ImpactOscillator:
