@@ -178,9 +178,7 @@ class ContactKeys:
         0.0, "N/m", "linear: stiffness; 0: that with Hertz's contact time", low=0.0
     )
     damping_ns_per_m: float = key(0.0, "N s/m", "linear: dashpot beside it", low=0.0)
-    local_restitution: float = key(
-        1.0, "1", "newton, tsuji: speed after over before a hit", low=0.0, high=1.0
-    )
+    local_restitution: float = key(1.0, "1", "newton, tsuji: speed after over before", low=0.0, high=1.0)
     dissipation_s_per_m: float = key(
         0.0, "s/m", "hunt_crossley: chi in N = k d^(3/2) (1 + chi d'), k that of hertz", low=0.0
     )
