@@ -35,6 +35,14 @@ def test_the_code_runs_and_prints_what_its_comments_promise(name, capsys):
     assert capsys.readouterr().out.split("\n")[:-1] == re.findall(r"print\(.*\)  # (.*)", block)
 
 
+def test_the_program_with_processes_prints_what_is_beside_it(tmp_path):
+    (block,) = re.findall(r"```python\n(.*?)```", TEXTS["collision"], flags=re.DOTALL)
+    (tmp_path / "peak.py").write_text(block)
+    call, place = [sys.executable, str(tmp_path / "peak.py")], os.environ | {"PYTHONPATH": str(ROOT)}
+    run = subprocess.run(call, env=place, capture_output=True, text=True, timeout=300, check=True)
+    assert re.findall(r"```text\n(.*?)```", TEXTS["collision"], flags=re.DOTALL) == [run.stdout]
+
+
 def test_the_readme_is_short_and_every_link_leads_somewhere():
     prose = re.sub(r"```.*?```", "", TEXTS["README"], flags=re.DOTALL)
     assert len(TEXTS["README"].splitlines()) <= 125 and len(re.findall(r"(?<![\w.])\d[\d.]*", prose)) <= 80
