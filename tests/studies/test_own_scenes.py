@@ -10,7 +10,15 @@ from unittest.mock import ANY
 import numpy as np
 import pytest
 
-from contact import HuntCrossley, State, StroboscopicMap, first_collision, maximal_period, simulate
+from contact import (
+    HuntCrossley,
+    PowerContact,
+    State,
+    StroboscopicMap,
+    first_collision,
+    maximal_period,
+    simulate,
+)
 from contact.orbits import settle
 from studies.experiment.time_trace.model import contact_force
 from studies.letter import PERIODS
@@ -157,11 +165,18 @@ def test_a_study_of_one_frequency_takes_one_of_the_scene():
     assert [own_frequency(read_scene(name), 21.5) for name in ("letter", "steel_ruler")] == [21.5, 7.62]
 
 
-def test_the_force_of_hunt_and_crossley_changes_the_momentum_of_the_tip():
+@pytest.mark.parametrize(
+    "name, number, kind, error",
+    [
+        ("hunt_crossley", "dissipation_s_per_m=0.3", HuntCrossley, 1e-6),
+        ("tsuji", "local_restitution=0.5", PowerContact, 1e-4),  # the force begins as the fourth root of time
+    ],
+)
+def test_the_force_of_a_damped_law_changes_the_momentum_of_the_tip(name, number, kind, error):
     """v' = -c v - omega^2 u - phi N, integrated over the contact."""
-    laws = ["contact.law=hunt_crossley", "contact.dissipation_s_per_m=0.3", "modes.count=1"]
+    laws = [f"contact.law={name}", f"contact.{number}", "modes.count=1"]
     oscillator = beam_at(read_scene("letter", laws), 22.2)
-    assert isinstance(oscillator.stop.law, HuntCrossley) and oscillator.stop.law.dissipation == 0.3
+    assert isinstance(oscillator.stop.law, kind)
     start = State(displacement=[0.0], velocity=[4.0 / oscillator.model.phi[0]])
     struck = simulate(replace(oscillator, drive=None), start, duration=0.05)
     begin, end = struck.impacts.start[0], struck.impacts.end[0]
@@ -169,4 +184,5 @@ def test_the_force_of_hunt_and_crossley_changes_the_momentum_of_the_tip():
     model, u, v = oscillator.model, run.displacement[:, 0], run.velocity[:, 0]
     spring = model.omega[0] ** 2 * u + model.decay_rate[0] * v
     slopes = spring + model.phi[0] * contact_force(oscillator, run)
-    assert np.trapezoid(slopes, run.time) == pytest.approx(v[0] - v[-1], rel=1e-6)
+    assert np.trapezoid(slopes, run.time) == pytest.approx(v[0] - v[-1], rel=error)
+    assert struck.impacts.peak_force[0] == pytest.approx(contact_force(oscillator, run).max(), rel=1e-5)

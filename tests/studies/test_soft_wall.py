@@ -111,7 +111,13 @@ def test_beam_with_hertz_contact(frequency, turns):
 
 
 def test_the_letter_is_marked_on_its_spring_alone():
-    numbers = {"kick_velocity": 1e-3, "closed_form": None, "soft_law": 1e-3, "hard_law": 1e-2}
+    numbers = {
+        "kick_velocity": 1e-3,
+        "closed_form": None,
+        "soft_law": 1e-3,
+        "hard_law": 1e-2,
+        "peak_force": 1.0,
+    }
     cases = zip(figure.CASES, (1e3, None), strict=True)
     rows = [Kick(case=case, hardness=hardness, excess=1e-4, **numbers) for case, hardness in cases]
     drawn = {letters: figure.draw_kicks(rows, letters) for letters in (True, False)}

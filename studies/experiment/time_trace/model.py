@@ -30,6 +30,7 @@ from contact import (
     ImpactOscillator,
     LinearContact,
     NewtonRestitution,
+    PowerContact,
     State,
     Trajectory,
     collisions,
@@ -144,6 +145,9 @@ def contact_force(oscillator: ImpactOscillator, run: Trajectory) -> Array:
         force = law.stiffness * depth**1.5
     elif isinstance(law, HuntCrossley):
         force = law.stiffness * depth**1.5 * (1.0 + law.dissipation * oscillator.tip(run.velocity))
+    elif isinstance(law, PowerContact):
+        lever = depth ** (0.5 * law.exponent - 0.5)
+        force = lever * (law.stiffness * lever * depth + law.damping * oscillator.tip(run.velocity))
     else:
         raise InvalidType(f"the force of {type(law).__name__} is not known here")
     return np.where(touching(run), np.maximum(force, 0.0), 0.0)
