@@ -146,8 +146,8 @@ def simulate(
     A tip that lies on the stop at the start, within rounding, touches it at once if it moves towards it, and
     leaves if it moves or is pulled away.  At rest and pressed, or without any force, it stays: under Newton's
     law as a STAY of approach 0, under a force law as a contact UNDER_WAY that begins at depth 0, and under
-    DelayedRestitution for the delay of its lowest speed, UNDER_WAY too.  That law has no longer rest, and
-    under Hertz's law a tip at rest without any force is not followed: a ContactError says so.
+    DelayedRestitution for the delay of its lowest speed, UNDER_WAY too.  That law has no longer rest: a
+    ContactError says so.
 
     ValueError is raised for a run of no length, times out of order or range, or a start behind the wall of an
     impact law; TypeError for a method that does not know the law; StepTooLarge for a step beyond its

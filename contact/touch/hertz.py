@@ -209,6 +209,13 @@ def series_variable(motion, t, end, series):
     return polynomial_root(series.scalars[CLOCK], 1.0, t, 0.0, end) if t > 0.0 else 0.0
 
 
+@part
+def first_depth(motion, run, u, v):
+    """The depth of a contact that begins: its rounding at least, as no sigma leads from rest at zero."""
+    moment = EPS * BRIEF * motion.period * run.memory1 * math.sqrt(motion.inverse_mass)  # where u = 0
+    return max(tip_rounding(motion, u, v), tip_state(motion, run.clock, u, v)[0], moment)
+
+
 @kernel
 def step(motion, run, u, v, limit, series):
     """One step from (u, v), at most `limit` [s]; see ``contact.touch``."""
@@ -216,12 +223,11 @@ def step(motion, run, u, v, limit, series):
     if run.memory1 < 0.0:
         run.memory1 = speed_scale(motion, u, v)
     if run.memory0 < 0.0:
-        # at rest no sigma leads away from r = 0, but d is known to rounding only, or to less at u = 0
-        moment = EPS * BRIEF * motion.period * run.memory1 * math.sqrt(motion.inverse_mass)
-        depth = tip_state(motion, run.clock, u, v)[0]
-        run.memory0 = math.sqrt(max(tip_rounding(motion, u, v), depth, moment))
+        run.memory0 = math.sqrt(first_depth(motion, run, u, v))
     r[0] = run.memory0
     fill(motion, run.clock, u, v, series)
+    if run.memory1 == 0.0:  # nothing moves
+        return 0.0, limit, CONTACT
     s = longest_step(motion, run.memory1, series)
     if not (0.0 < s < math.inf):
         return math.nan, math.nan, CONTACT

@@ -33,7 +33,7 @@ import numpy as np
 
 from beam.parameters import InvalidValue, final, require_within
 from contact.flight.elementary import EPS, sine_cosine
-from contact.flight.modal_flow import speed_scale, tip_state, tip_sum
+from contact.flight.modal_flow import speed_scale, tip_sum
 from contact.flight.polynomial_root import first_polynomial_root, horner
 from contact.laws import ContactLaw
 from contact.machine.compiled import kernel, part
@@ -270,11 +270,11 @@ def step(motion, run, u, v, limit, series):
     if run.memory1 < 0.0:
         run.memory1 = speed_scale(motion, u, v)
     if run.memory0 < 0.0:
-        run.memory0 = max(0.0, tip_state(motion, run.clock, u, v)[0]) ** (
-            1.0 / motion.table[NUMBERS, FINENESS]
-        )
+        run.memory0 = hertz.first_depth(motion, run, u, v) ** (1.0 / motion.table[NUMBERS, FINENESS])
     root[0], regime = run.memory0, run.regime
     fill(motion, run.clock, u, v, regime == CONTACT, series)
+    if run.memory1 == 0.0:  # nothing moves
+        return 0.0, limit, regime
     s = longest_step(motion, run.memory1, series)
     if not (0.0 < s < math.inf):
         return math.nan, math.nan, CONTACT

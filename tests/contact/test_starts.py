@@ -7,12 +7,22 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from beam import ModalModel
-from contact import HertzContact, ImpactOscillator, LinearContact, NewtonRestitution, State, Stop, simulate
+from contact import (
+    HertzContact,
+    ImpactOscillator,
+    LinearContact,
+    NewtonRestitution,
+    PowerContact,
+    State,
+    Stop,
+    simulate,
+)
 
 STIFF = 200.0
 LAWS = {
     "linear": (LinearContact(stiffness=STIFF, damping=0.0), 1.0),
     "hertz": (HertzContact(stiffness=STIFF), 1.5),
+    "power": (PowerContact(stiffness=STIFF, exponent=1.75), 1.75),
 }
 
 
@@ -69,6 +79,13 @@ def test_newton_stays_if_pressed_and_leaves_if_pulled(seed, gap):
     run = simulate(oscillator, state, duration=1e-3)
     assert run.end.regime == 0 and len(run.impacts) == 0
     assert oscillator.tip(run.end.displacement) - gap == pytest.approx(-1e-6, rel=0.05)
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_a_mass_without_force_stays_at_a_stop_with_a_force_law(law):
+    oscillator, state = on_stop(LAWS[law][0], 0.3, 0.0)
+    run = simulate(oscillator, state, duration=3.0)
+    assert run.end.displacement[0] == 0.3 and run.impacts.peak_force[0] == pytest.approx(0.0, abs=1e-10)
 
 
 def test_a_start_that_moves_towards_the_stop_is_an_impact_and_one_without_force_a_stay():
