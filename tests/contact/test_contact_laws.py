@@ -138,7 +138,7 @@ def test_energy_is_kept_over_1e4_contacts_of_a_conservative_spring(law, allowed)
         outside = heights(oscillator, q) < 1e-12  # inside, the stop stores some of it
         assert outside.sum() > 0.9 * outside.size
         assert np.max(np.abs(oscillator.energy(q, v)[outside] / first - 1)) < allowed
-    finished = np.isfinite(run.impacts.loss)
+    finished = np.isfinite(run.impacts.end)
     assert np.max(np.abs(run.impacts.loss[finished])) < 1e-13 * first
 
 

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import copy
 import math
+import warnings
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
-from beam import Refusal
+from beam import Refusal, SuspiciousValue
 from contact import ContactError, ImpactOscillator
 from studies.measurement.identify.descent import Found, descend
 from studies.measurement.identify.predictions import Prediction
@@ -111,7 +112,9 @@ class Problem:
         try:
             if np.any(np.abs(unknowns - self.start) > self.farthest):
                 raise NoAnswer("free period or drive frequency is far from where the search begins")
-            predicted = self.prediction.values(*self.at(unknowns)).ravel()
+            with warnings.catch_warnings():  # a search may pass through any value
+                warnings.simplefilter("ignore", SuspiciousValue)
+                predicted = self.prediction.values(*self.at(unknowns)).ravel()
         except (ContactError, Refusal):
             return np.full(self.observed.size + self.held.size, np.nan)
         off = (predicted - self.observed) * self.weights
