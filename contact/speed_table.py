@@ -2,7 +2,7 @@
 
 A table has the approach speeds [m/s], rising, in its first row.  Each function takes two more rows, its
 values and its slopes.  Between two columns a function is the cubic with their values and slopes; beyond the
-table it keeps its end values.  The slopes of samples are those of their cubic spline.
+table it keeps its end values.  Samples get the slopes of their cubic spline.
 """
 
 from __future__ import annotations

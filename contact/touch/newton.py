@@ -145,8 +145,8 @@ def improve(motion, log, states):
     """Date the stays by the impacts before them.
 
     The last hops are so low that rounding leaves their speed v two digits.  Hops before them give the time of
-    rest as well.  Its error is the rounding of the tip displacement over v (1 - e)^2, as those of all hops
-    add up, and W (W Omega)^2 for a pull that changes at the frequency Omega.  The best is taken
+    rest as well.  Its error is the rounding of the tip displacement over v (1 - e)^2, as the errors of all
+    hops add up, and W (W Omega)^2 for a pull that changes at the frequency Omega.  The best is taken
     that agrees with those after it.
     """
     lost, rest = max(1.0 - motion.number0, EPS), 0.0

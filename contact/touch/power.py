@@ -69,7 +69,7 @@ MOST = WINDOW  # largest m: a mode moves at each order m of sigma, and `WINDOW` 
 series_size, series_variable, state = hertz.series_size, hertz.series_variable, hertz.state
 
 LETS_GO = 4
-"""Row of the scalar series beside those of Hertz's law: G."""
+"""Row of the scalar series that holds G."""
 
 
 @final
