@@ -1,25 +1,41 @@
-"""A power of the depth with a dashpot: N = max(0, k d^p + c d^((p-1)/2) d') for d > 0 (``PowerContact``).
+"""A power of the depth with a dashpot: N = d^x (k d^y + c d') for d > 0.
 
-In w = d^((p+1)/2) and dtau = d^((p-1)/2) dt a free mass m is a linear oscillator at every speed,
+    HertzContact, HuntCrossley    x = 3/2, y = 0, c = k chi
+    PowerContact, c > 0           x = (p-1)/2, y = (p+1)/2, cut at zero force
+    PowerContact, c = 0           x = p, y = 0
 
-    w'' + (c/m) w' + (p+1)/2 (k/m) w = 0,      N = -2 m/(p+1) d^((p-1)/2) w''.
+For y = 0 the second number of the law is c/k, and the force is not cut.
 
-The force has no Taylor series at d = 0.  As in ``contact.touch.hertz`` the motion is computed in a variable
-sigma in which all right-hand sides are polynomials.  With d = rho^m, a = m p and b = m (p-1)/2,
+Under ``PowerContact``, in w = d^((p+1)/2) and dtau = d^((p-1)/2) dt, a free mass M is a linear oscillator at
+every speed: w'' + (c/M) w' + (p+1)/2 (k/M) w = 0.
+
+The force has no Taylor series at d = 0, where every contact begins and ends.  Let m be the least number for
+which m x and m y are whole.  Take rho = d^(1/m) as an unknown of its own, and a variable sigma that runs
+slowly while the contact is shallow.  With l = m x + m - 1,
 
     dt/dsigma = rho^(m-1),  drho/dsigma = d'/m,  du/dsigma = rho^(m-1) v,
-    dv/dsigma = rho^(m-1) (g - c_k v - omega^2 u) - phi_k rho^l G,      G = k rho^h + c d',
+    dv/dsigma = rho^(m-1) (g - c_k v - omega^2 u) - phi_k P,
+    P = rho^(m-1) N = rho^l G,  G = k rho^(m y) + c d',  d' = sum phi_k v + x_s'(t).
 
-with l = b + m - 1 and h = b + m, or without damping l = a - 1 and h = m.  The least m is taken for which a
-and, with damping, b are whole numbers.  The powers come from each other by products of two series, by a plan
-in the law's table, so that no kernel branches by exponent.
+All right-hand sides are polynomials, so that the motion is analytic through touch and release, where rho
+changes sign (the substitution is Sundman's, Acta Math. 36 (1913) 105).  The coefficients of one order follow
+from sums over the orders before,
 
-With damping the contact lets go where G falls to zero, before d does (regime INSIDE).  There the tip moves
-without a force, until G rises through zero again, or the tip leaves where rho falls to zero.
+    sum_j rho^(m-1)_(n-j) x_j    for x = d', sin(w t), cos(w t), all u and all v,
+    sum_j rho_(n-j) (rho^i)_j    for all powers of rho that are needed,
 
-A force enters the speeds at the order 2 (b + m), or b + m, of sigma.  If it is above `WINDOW`, the terms of a
-step could all be small although the force is not.  Such a step reaches at most thrice the rho of its start,
-or the depth up to which the impulse of this force is below rounding.
+which fill the columns of one array and are computed eight at a time (``contact.machine.vector_loops``).  For
+m = 2 both are the same call.  The term with the newest x_n is added separately, so that no sum waits for it.
+The cost of a step is the number of modes times the square of the order.
+
+A step ends at the sigma at which the last terms, in every mode and in rho, reach `TOLERANCE` of the modal
+speeds.  The energy of a lossless contact is conserved to that order.  A step ends earlier at the release,
+where rho falls to zero.  A force that is cut lets go where G falls to zero, before d does (regime INSIDE).
+There the tip moves without a force, until G rises through zero again, or the tip leaves.
+
+A force enters the speeds at the order m (p+1), its dashpot at half of it.  If it is above `WINDOW`, the terms
+of a step could all be small although the force is not.  Such a step reaches at most thrice the rho of its
+start, or the depth up to which the impulse of this force is below rounding.
 """
 
 from __future__ import annotations
@@ -33,43 +49,41 @@ import numpy as np
 
 from beam.parameters import InvalidValue, final, require_within
 from contact.flight.elementary import EPS, sine_cosine
-from contact.flight.modal_flow import speed_scale, tip_sum
-from contact.flight.polynomial_root import first_polynomial_root, horner
-from contact.laws import ContactLaw
+from contact.flight.modal_flow import BRIEF, speed_scale, tip_rounding, tip_state, tip_sum
+from contact.flight.motion import SQUARE
+from contact.flight.polynomial_root import first_polynomial_root, horner, polynomial_root
+from contact.laws import POWER, ContactLaw
 from contact.machine.compiled import kernel, part
 from contact.machine.vector_loops import LANES, next_modes, weighted_rows
 from contact.restitution import damping_ratio
-from contact.touch import hertz
 from contact.touch.exchange import exchange_of
-from contact.touch.hertz import CLOCK, COSINE, INVERSE, ORDER, PUSH, ROOT, SINE, SPEED, TOLERANCE
-from contact.touch.power_plan import (
-    DASHPOT_SLOPE,
-    EFFECT,
-    EXPONENT,
-    FINENESS,
-    LEFT,
-    LEVER,
-    NUMBERS,
-    ONE,
-    PRODUCTS,
-    RIGHT,
-    RISE,
-    SLOPE,
-    TIME,
-    plan_of,
-)
-from contact.touch.series import WINDOW, limited_by_force, log_longest
+from contact.touch.series import WINDOW, limited_by_force, log_longest, powers_of
 from contact.trajectory import CONTACT, INSIDE, OUTSIDE
 
-LAW, METHOD = "PowerContact", "power-series"
+LAW, METHOD = "HertzContact, HuntCrossley or PowerContact", "contact-series"
 REGIMES = (OUTSIDE, CONTACT, INSIDE)
-POWER = 4  # code of the law
-MOST = WINDOW  # largest m: a mode moves at each order m of sigma, and `WINDOW` last orders limit a step
+MOST = WINDOW  # largest m of a `PowerContact`
 
-series_size, series_variable, state = hertz.series_size, hertz.series_variable, hertz.state
+ORDER = 20  # order of the series in sigma, even: the cost per unit of time is flat from 16 to 24
+TOLERANCE = 1e-15  # last terms of a step over the modal speeds, at the rounding of the sum of all terms
+EDGE = math.log(TOLERANCE) / ORDER  # logarithm of a step over the radius of convergence
+FAR = math.log(1.5)
+"""Logarithm of a factor.  Terms of rho before the last limit a step only if their bound is shorter than the
+others by this factor: where the modes take part, the last terms agree within it."""
 
-LETS_GO = 4
-"""Row of the scalar series that holds G."""
+SPEED, SINE, COSINE = range(3)
+"""Columns of the series in front of the modes: d', sine and cosine of the drive; powers of rho follow."""
+
+ROOT, CLOCK, PUSH, POWERS, LETS_GO, TIME = range(6)
+LEVER, STEEP = 8, 9
+"""Rows of the scalar series: rho, time since the start of the step, P, powers of sigma, G, rho^(m-1), rho^l,
+rho^(m x - 1); rows 6 and 7 are those of ``contact.touch.exchange``."""
+
+RELAXED = 3.0
+"""Longest step times the rate phi^2 dN/dd' at which the dissipation damps a disturbance.  A series of order
+20 keeps ten digits of exp(-3).  Beyond 8 the tangents grow, although the motion does not show it."""
+
+INVERSE = 1.0 / np.maximum(1.0, np.arange(64.0))  # 1/n
 
 
 @final
@@ -120,8 +134,10 @@ class PowerContact(ContactLaw):
 
     @property
     def table(self) -> np.ndarray:
-        """The plan of the powers of rho; see `plan_of`."""
-        return plan_of(self._fraction, self.damping > 0.0)
+        """m, m x and m y, shape (1, 3); see ``contact.touch.power``."""
+        p = self._fraction
+        x, y = ((p - 1) / 2, (p + 1) / 2) if self.damping > 0.0 else (p, Fraction(0))
+        return np.array([[float(x.denominator * number) for number in (1, x, y)]])
 
     @staticmethod
     def with_restitution(
@@ -138,68 +154,101 @@ class PowerContact(ContactLaw):
         return replace(elastic, damping=2.0 * damping_ratio(restitution) * rate)
 
 
+@part
+def exponents(numbers):
+    """m, m x and m y."""
+    table = numbers.table
+    return int(table[0, 0]), int(table[0, 1]), int(table[0, 2])
+
+
+@part
+def dashpot(numbers):
+    """c."""
+    return numbers.number1 * (numbers.number0 if numbers.table[0, 2] == 0.0 else 1.0)
+
+
 @kernel
 def force(numbers, depth, rate):
     """N at penetration `depth` >= 0 and its `rate` [N]."""
-    lever = depth ** (0.5 * numbers.table[NUMBERS, EXPONENT] - 0.5)
-    return max(0.0, lever * (numbers.number0 * lever * depth + numbers.number1 * rate))
+    m, outer, inner = exponents(numbers)
+    push = depth ** (outer / m) * (numbers.number0 * depth ** (inner / m) + dashpot(numbers) * rate)
+    return max(0.0, push) if inner > 0 else push
 
 
 @kernel
 def stiffness(numbers, depth, rate):
     """dN/dd [N/m] and dN/dd' [N s/m]."""
-    p = numbers.table[NUMBERS, EXPONENT]
-    lever = depth ** (0.5 * p - 0.5)
-    spring, dashpot = numbers.number0 * lever, numbers.number1 * rate
-    if spring * depth + dashpot <= 0.0:
+    (m, outer, inner), c = exponents(numbers), dashpot(numbers)
+    spring, steep = numbers.number0 * depth ** (inner / m), depth ** (outer / m - 1.0)
+    if inner > 0 and spring + c * rate <= 0.0:
         return 0.0, 0.0
-    bend = 0.5 * (p - 1.0) * lever * dashpot / depth if dashpot != 0.0 else 0.0
-    return p * spring * lever + bend, numbers.number1 * lever
+    return steep * (outer * (spring + c * rate) + inner * spring) / m, c * steep * depth
+
+
+@kernel
+def series_size(motion):
+    """Order and columns of the series: drive and powers of rho, filled up to eight, then u, then v."""
+    m, outer, inner = exponents(motion)
+    front = COSINE + 1 + max(outer + m - 1, outer + inner - 1, inner)
+    return ORDER, (front + LANES - 1) // LANES * LANES + 2 * motion.modes.shape[1]
+
+
+@part
+def power(rows, n, i):
+    """Order n of rho^i."""
+    return rows[n, COSINE + i] if i > 0 else (1.0 if n == 0 else 0.0)
 
 
 @part
 def product(x, y, n):
     """Order n of the product of two series."""
-    total = 0.0
-    for i in range(n + 1):
-        total += x[i] * y[n - i]
-    return total
-
-
-@part
-def power(motion, series, number):
-    """The scalar series in the row that this number of the table names."""
-    return series.scalars[int(motion.table[NUMBERS, number])]
+    even, odd = x[n] * y[0], 0.0
+    for i in range(0, n - 1, 2):
+        even += x[i] * y[n - i]
+        odd += x[i + 1] * y[n - i - 1]
+    return even + odd if n % 2 == 0 else even + odd + x[n - 1] * y[1]
 
 
 @part
 def fill(motion, base, u, v, pushes, series):
     """The Taylor coefficients in sigma from (u, v) at drive time `base` [s], with or without the force.
 
-    On entry scalars[ROOT, 0] holds rho."""
+    On entry scalars[ROOT, 0] holds rho.  Computed anew from the tip displacement, rho would lose its digits
+    at shallow depth.
+    """
     rows, sums, modes, w, scalars = series.rows, series.sums, motion.modes, motion.drive, series.scalars
-    a, b, table, damping = motion.tip_sine, motion.tip_cosine, motion.table, motion.number1
+    a, b, k, c = motion.tip_sine, motion.tip_cosine, motion.number0, dashpot(motion)
     root, clock, push, lets_go = scalars[ROOT], scalars[CLOCK], scalars[PUSH], scalars[LETS_GO]
-    time, lever, rise = power(motion, series, TIME), power(motion, series, LEVER), power(motion, series, RISE)
-    at_v, fineness, products = LANES + modes.shape[1], table[NUMBERS, FINENESS], int(table[NUMBERS, PRODUCTS])
+    time, lever, (m, outer, inner) = scalars[TIME], scalars[LEVER], exponents(motion)
+    lift, at_v, share = outer + m - 1, rows.shape[1] - modes.shape[1], 1.0 / m
+    at_u, top, rho = at_v - modes.shape[1], max(lift, outer + inner - 1, inner), root[0]
+    front = sums if m == 2 else sums[:at_u]
     sine, cosine = sine_cosine(w * base, 0.0)
     speed = tip_sum(motion, w * (a * cosine - b * sine), v)
-    for k in range(u.size):
-        rows[0, LANES + k] = u[k]
-        rows[0, at_v + k] = v[k]
+    for i in range(u.size):
+        rows[0, at_u + i] = u[i]
+        rows[0, at_v + i] = v[i]
     rows[0, SPEED], rows[0, SINE], rows[0, COSINE] = speed, sine, cosine
-    clock[0], push[ORDER], scalars[ONE, 0] = 0.0, 0.0, 1.0
+    clock[0], push[ORDER] = 0.0, 0.0
     for n in range(ORDER):
-        for i in range(products):
-            left, right = int(table[LEFT, i]), int(table[RIGHT, i])
-            scalars[ONE + 1 + i, n] = product(scalars[left], scalars[right], n)
-        lets_go[n] = motion.number0 * rise[n] + damping * speed
-        push[n] = product(lever, lets_go, n) if pushes else 0.0
-        inverse, start = INVERSE[n + 1], time[0]
-        weighted_rows(time, n, -1, rows, n, sums)
-        root[n + 1], clock[n + 1] = inverse / fineness * speed, inverse * time[n]
+        inverse, value = INVERSE[n + 1], root[n]
+        weighted_rows(root, n, -1, rows, n, front)
+        root[n + 1] = share * inverse * speed
+        rows[n, COSINE + 1] = value
+        for i in range(COSINE + 1, COSINE + top):
+            value = front[i] + rho * value
+            rows[n, i + 1] = value
+        time[n], lever[n], push[n] = power(rows, n, m - 1), power(rows, n, lift), 0.0
+        if m != 2:
+            weighted_rows(time, n, -1, rows, n, sums)
+        clock[n + 1] = inverse * time[n]
+        if pushes and c == 0.0:
+            push[n] = k * lever[n]
+        elif c != 0.0:
+            lets_go[n] = k * power(rows, n, inner) + c * speed
+            push[n] = product(lever, lets_go, n) if pushes else 0.0
+        start, turn = time[0], w * inverse
         tip = next_modes(modes, sums, start, inverse, time[n], inverse * push[n], n, rows)
-        turn = w * inverse
         sine, cosine = turn * (sums[COSINE] + start * cosine), -turn * (sums[SINE] + start * sine)
         speed = w * (a * cosine - b * sine) + tip
         rows[n + 1, SPEED], rows[n + 1, SINE], rows[n + 1, COSINE] = speed, sine, cosine
@@ -207,36 +256,51 @@ def fill(motion, base, u, v, pushes, series):
 
 @kernel
 def slopes(motion, run, series, weights):
-    """The series for the tangents: rho^(m-1) times 1, dN/dd, dN/dd', N, dN/dk and dN/dc."""
-    k, c, p, rates = motion.number0, motion.number1, motion.table[NUMBERS, EXPONENT], series.rows[:, SPEED]
-    time, lever, rise = power(motion, series, TIME), power(motion, series, LEVER), power(motion, series, RISE)
-    slope, dashpot = power(motion, series, SLOPE), power(motion, series, DASHPOT_SLOPE)
-    pushes, half = 0.0 if run.regime == INSIDE else 1.0, 0.5 * (p - 1.0) * c
+    """The series for the tangents: rho^(m-1) times 1, dN/dd, dN/dd', N and its slopes by the two numbers."""
+    rows, rates, k, c = series.rows, series.rows[:, SPEED], motion.number0, dashpot(motion)
+    lever, steep, push = series.scalars[LEVER], series.scalars[STEEP], series.scalars[PUSH]
+    (m, outer, inner), pushes = exponents(motion), 0.0 if run.regime == INSIDE else 1.0
     for n in range(ORDER):
-        weights.time[n], weights.force[n] = time[n], series.scalars[PUSH, n]
-        weights.depth[n] = pushes * (p * k * slope[n] + half * product(dashpot, rates, n))
+        steep[n] = power(rows, n, max(0, outer - 1))
+        drag = outer * c * product(steep, rates, n) if c != 0.0 else 0.0
+        weights.time[n], weights.force[n] = series.scalars[TIME, n], push[n]
+        weights.depth[n] = pushes * ((outer + inner) * k * power(rows, n, outer + inner - 1) + drag) / m
         weights.rate[n] = pushes * c * lever[n]
-        weights.first[n] = pushes * product(lever, rise, n)
         weights.second[n] = pushes * product(lever, rates, n)
+        weights.first[n] = (push[n] - c * weights.second[n]) / k
+        if inner == 0:  # the second number is c/k
+            weights.first[n], weights.second[n] = push[n] / k, k * weights.second[n]
     return ORDER
 
 
 @kernel
 def exchange(motion, run, span, series, known):
     """What the tip gives to the stop: work, impulse and largest force; see ``contact.touch``."""
-    rate, time = series.rows[:, SPEED], power(motion, series, TIME)
+    rate, time = series.rows[:, SPEED], series.scalars[TIME]
     return exchange_of(series, series.scalars[PUSH], rate, time, span, known)
 
 
 @part
+def greatest_speed(modes, rows, order):
+    """The largest coefficient of this order among all v and omega u."""
+    m, top = modes.shape[1], 0.0
+    at_v = rows.shape[1] - m
+    for k in range(m):
+        u, v = rows[order, at_v - m + k], rows[order, at_v + k]
+        top = max(top, v * v, modes[SQUARE, k] * u * u)
+    return math.sqrt(top)
+
+
+@part
 def farthest(motion, speed, root):
-    """The sigma up to which a step sees each force that enters the speeds beyond `WINDOW` orders."""
-    m, p, e = motion.table[NUMBERS, FINENESS], motion.table[NUMBERS, EXPONENT], motion.table[NUMBERS, EFFECT]
-    allowed, negligible = 0.5 * (p + 1.0) * TOLERANCE * speed / math.sqrt(motion.inverse_mass), math.inf
-    if 2.0 * e > WINDOW:  # the impulse k d^(p+1)/((p+1) d'), d' = m root[1]
-        negligible = (2.0 * allowed * m * abs(root[1]) / motion.number0) ** (0.5 / e)
-    if motion.number1 > 0.0 and e > WINDOW:  # 2 c d^((p+1)/2)/(p+1)
-        negligible = min(negligible, (allowed / motion.number1) ** (1.0 / e))
+    """The sigma up to which a step sees a force that enters the speeds beyond `WINDOW` orders."""
+    m, outer, inner = exponents(motion)
+    entry = outer + inner + m  # m (p + 1)
+    allowed = 0.5 * entry / m * TOLERANCE * speed / math.sqrt(motion.inverse_mass)
+    # the impulse k d^(p+1)/((p+1) d'), d' = m root[1], and that of the dashpot, 2 c d^((p+1)/2)/(p+1)
+    negligible = (2.0 * allowed * m * abs(root[1]) / motion.number0) ** (1.0 / entry)
+    if inner > WINDOW:
+        negligible = min(negligible, (allowed / motion.number1) ** (1.0 / inner))
     way = max(2.0 * root[0], negligible - root[0])
     s = way / abs(root[1]) if root[1] != 0.0 else math.inf
     return min(s, math.sqrt(way / abs(root[2]))) if root[2] != 0.0 and way > 0.0 else s
@@ -244,33 +308,76 @@ def farthest(motion, speed, root):
 
 @part
 def longest_step(motion, speed, series):
-    """The sigma up to which the series holds: the last `WINDOW` orders of modes, rho and force are small."""
-    root, longest, size = series.scalars[ROOT], math.inf, math.log(TOLERANCE) / ORDER
-    for n in range(ORDER - WINDOW + 1, ORDER + 1):
-        top = hertz.greatest_speed(motion.modes, series.rows, n)
-        longest = min(longest, size + log_longest(top, n, speed))
+    """The sigma up to which the series holds: the last orders of modes, rho and force are small.
+
+    The modes move at each order m of sigma, and so does rho: one of the last m orders shows it.
+    """
+    (m, outer, inner), root, longest = exponents(motion), series.scalars[ROOT], math.inf
+    last = ORDER - max(2, m)
+    for n in range(ORDER, last, -1):
+        top = greatest_speed(motion.modes, series.rows, n)
+        longest = min(longest, EDGE + log_longest(top, n, speed))
+    # rho must be resolved as well as the modes, relative to the larger of its first two terms.  Under a
+    # contact so soft that the modes give no bound, some terms of rho vanish, and the last may give none.
+    for n in range(ORDER, last, -1):
         if root[n] != 0.0 and (root[0] != 0.0 or root[1] != 0.0):
             whole = log_longest(abs(root[n]), n, abs(root[0])) if root[0] != 0.0 else -math.inf
             linear = log_longest(abs(root[n]), n - 1, abs(root[1])) if root[1] != 0.0 else -math.inf
-            longest = min(longest, size + max(whole, linear))
-    push, mobility, edge = series.scalars[PUSH], math.sqrt(motion.inverse_mass), TOLERANCE ** (1.0 / ORDER)
-    s = limited_by_force(math.exp(longest), push, ORDER - 1, mobility, speed, edge)
-    s = min(s, farthest(motion, speed, root))
+            bound = EDGE + max(whole, linear)
+            if n == ORDER or bound < longest - FAR:
+                longest = min(longest, bound)
+    push, mobility = series.scalars[PUSH], math.sqrt(motion.inverse_mass)
+    s = limited_by_force(math.exp(longest), push, ORDER - 1, mobility, speed, math.exp(EDGE))
+    if outer + inner + m > WINDOW:
+        s = min(s, farthest(motion, speed, root))
     if root[1] < 0.0 < root[0]:  # stop well behind the release: without a force the terms give no bound
         s = min(s, -4.0 * root[0] / root[1])
+    if motion.number1 == 0.0:
+        return s
+    # the dissipation is largest at the deeper end of the step
     deep = max(root[0], horner(root, 1.0, 0.0, s)[0]) if s < math.inf else root[0]
-    rate = motion.inverse_mass * motion.number1 * deep ** (motion.table[NUMBERS, EFFECT] - 1.0)
-    return min(s, hertz.RELAXED / rate) if rate > 0.0 else s
+    return min(s, RELAXED / (motion.inverse_mass * dashpot(motion) * deep ** (outer + m - 1.0)))
+
+
+@part
+def release_in(r, s):
+    """The sigma in (0, s] at which r falls to zero, or -1."""
+    rest, power = 0.0, s
+    for n in range(2, ORDER + 1):
+        power *= s
+        rest += abs(r[n]) * power
+    start, drift = abs(r[0]), r[1] * s
+    size = start + abs(drift) + rest
+    margin = 2.0 * EPS * size
+    # r >= r_0 + (r_1 - rest/s) sigma if this bound grows, and always r >= r_0 - |drift| - rest
+    if drift - rest > margin or start - abs(drift) - rest > margin:
+        return -1.0
+    return first_polynomial_root(r, -1.0, s, EPS * size)
+
+
+@kernel
+def series_variable(motion, t, end, series):
+    """The sigma at which a time `t` [s] has passed, in a step up to `end`."""
+    return polynomial_root(series.scalars[CLOCK], 1.0, t, 0.0, end) if t > 0.0 else 0.0
+
+
+@part
+def first_depth(motion, run, u, v):
+    """The depth of a contact that begins: its rounding at least, as no sigma leads from rest at zero."""
+    moment = EPS * BRIEF * motion.period * run.memory1 * math.sqrt(motion.inverse_mass)  # where u = 0
+    return max(tip_rounding(motion, u, v), tip_state(motion, run.clock, u, v)[0], moment)
 
 
 @kernel
 def step(motion, run, u, v, limit, series):
     """One step from (u, v), at most `limit` [s]; see ``contact.touch``."""
-    root, clock, lets_go = series.scalars[ROOT], series.scalars[CLOCK], series.scalars[LETS_GO]
+    root, clock, (m, _outer, inner) = series.scalars[ROOT], series.scalars[CLOCK], exponents(motion)
+    if inner == 0:  # the force is not cut
+        run.regime = CONTACT
     if run.memory1 < 0.0:
         run.memory1 = speed_scale(motion, u, v)
     if run.memory0 < 0.0:
-        run.memory0 = hertz.first_depth(motion, run, u, v) ** (1.0 / motion.table[NUMBERS, FINENESS])
+        run.memory0 = first_depth(motion, run, u, v) ** (1.0 / m)
     root[0], regime = run.memory0, run.regime
     fill(motion, run.clock, u, v, regime == CONTACT, series)
     if run.memory1 == 0.0:  # nothing moves
@@ -278,12 +385,12 @@ def step(motion, run, u, v, limit, series):
     s = longest_step(motion, run.memory1, series)
     if not (0.0 < s < math.inf):
         return math.nan, math.nan, CONTACT
-    end, following = hertz.release_in(root, s), regime
+    end, following = release_in(root, s), regime
     if end >= 0.0:
         s, following = end, OUTSIDE
-    if motion.number1 > 0.0:
+    if inner > 0:
         margin = 4.0 * EPS * motion.number1 * math.sqrt(motion.inverse_mass) * run.memory1
-        end = first_polynomial_root(lets_go, -1.0 if regime == CONTACT else 1.0, s, margin)
+        end = first_polynomial_root(series.scalars[LETS_GO], -1.0 if regime == CONTACT else 1.0, s, margin)
         if 0.0 <= end < s:
             s, following = end, INSIDE if regime == CONTACT else CONTACT
     length = horner(clock, 1.0, 0.0, s)[0]
@@ -291,3 +398,15 @@ def step(motion, run, u, v, limit, series):
         s, length, following = series_variable(motion, limit, s, series), limit, regime
     run.memory0 = horner(root, 1.0, 0.0, s)[0]
     return s, length, following
+
+
+@kernel
+def state(motion, run, s, series, u, v):
+    """Deviations of all modes at sigma = `s`, in `u` and `v`."""
+    powers = series.scalars[POWERS]
+    powers_of(s, powers)
+    weighted_rows(powers, 0, 1, series.rows, ORDER + 1, series.sums)
+    at_v = series.sums.size - motion.modes.shape[1]
+    for k in range(u.size):
+        u[k] = series.sums[at_v - motion.modes.shape[1] + k]
+        v[k] = series.sums[at_v + k]
