@@ -9,8 +9,8 @@ For y = 0 the second number of the law is c/k, and the force is not cut.
 Under ``PowerContact``, in w = d^((p+1)/2) and dtau = d^((p-1)/2) dt, a free mass M is a linear oscillator at
 every speed: w'' + (c/M) w' + (p+1)/2 (k/M) w = 0.
 
-The force has no Taylor series at d = 0, where every contact begins and ends.  Let m be the least number for
-which m x and m y are whole.  Take rho = d^(1/m) as an unknown of its own, and a variable sigma that runs
+The force has no Taylor series at d = 0, where every contact begins and ends.  Let m > 1 be the least number
+for which m x and m y are whole.  Take rho = d^(1/m) as an unknown of its own, and a variable sigma that runs
 slowly while the contact is shallow.  With l = m x + m - 1,
 
     dt/dsigma = rho^(m-1),  drho/dsigma = d'/m,  du/dsigma = rho^(m-1) v,
@@ -137,7 +137,8 @@ class PowerContact(ContactLaw):
         """m, m x and m y, shape (1, 3); see ``contact.touch.power``."""
         p = self._fraction
         x, y = ((p - 1) / 2, (p + 1) / 2) if self.damping > 0.0 else (p, Fraction(0))
-        return np.array([[float(x.denominator * number) for number in (1, x, y)]])
+        m = max(2, x.denominator)
+        return np.array([[float(m), float(m * x), float(m * y)]])
 
     @staticmethod
     def with_restitution(
@@ -201,12 +202,14 @@ def power(rows, n, i):
 
 @part
 def product(x, y, n):
-    """Order n of the product of two series."""
-    even, odd = x[n] * y[0], 0.0
-    for i in range(0, n - 1, 2):
+    """Order n of the product of two series; the newest terms are added last."""
+    even, odd = 0.0, 0.0
+    for i in range(1, n - 1, 2):
         even += x[i] * y[n - i]
         odd += x[i + 1] * y[n - i - 1]
-    return even + odd if n % 2 == 0 else even + odd + x[n - 1] * y[1]
+    if n > 0 and n % 2 == 0:
+        even += x[n - 1] * y[1]
+    return even + odd + x[0] * y[n] + (x[n] * y[0] if n > 0 else 0.0)
 
 
 @part
@@ -220,7 +223,7 @@ def fill(motion, base, u, v, pushes, series):
     a, b, k, c = motion.tip_sine, motion.tip_cosine, motion.number0, dashpot(motion)
     root, clock, push, lets_go = scalars[ROOT], scalars[CLOCK], scalars[PUSH], scalars[LETS_GO]
     time, lever, (m, outer, inner) = scalars[TIME], scalars[LEVER], exponents(motion)
-    lift, at_v, share = outer + m - 1, rows.shape[1] - modes.shape[1], 1.0 / m
+    lift, at_v, share, unit = outer + m - 1, rows.shape[1] - modes.shape[1], 1.0 / m, 1.0 if c != 0.0 else k
     at_u, top, rho = at_v - modes.shape[1], max(lift, outer + inner - 1, inner), root[0]
     front = sums if m == 2 else sums[:at_u]
     sine, cosine = sine_cosine(w * base, 0.0)
@@ -233,22 +236,23 @@ def fill(motion, base, u, v, pushes, series):
     for n in range(ORDER):
         inverse, value = INVERSE[n + 1], root[n]
         weighted_rows(root, n, -1, rows, n, front)
-        root[n + 1] = share * inverse * speed
+        root[n + 1], turn = share * inverse * speed, w * inverse
         rows[n, COSINE + 1] = value
-        for i in range(COSINE + 1, COSINE + top):
+        for i in range(COSINE + 1, COSINE + lift):
             value = front[i] + rho * value
             rows[n, i + 1] = value
-        time[n], lever[n], push[n] = power(rows, n, m - 1), power(rows, n, lift), 0.0
+        lever[n], force = value, value
+        for i in range(COSINE + lift, COSINE + top):
+            value = front[i] + rho * value
+            rows[n, i + 1] = value
+        if c != 0.0:
+            lets_go[n] = k * power(rows, n, inner) + c * speed
+            force = product(lever, lets_go, n) if pushes else 0.0
+        push[n], time[n] = unit * force, rows[n, COSINE + m - 1]
         if m != 2:
             weighted_rows(time, n, -1, rows, n, sums)
-        clock[n + 1] = inverse * time[n]
-        if pushes and c == 0.0:
-            push[n] = k * lever[n]
-        elif c != 0.0:
-            lets_go[n] = k * power(rows, n, inner) + c * speed
-            push[n] = product(lever, lets_go, n) if pushes else 0.0
-        start, turn = time[0], w * inverse
-        tip = next_modes(modes, sums, start, inverse, time[n], inverse * push[n], n, rows)
+        clock[n + 1], start = inverse * time[n], time[0]
+        tip = next_modes(modes, sums, start, inverse, time[n], unit * inverse * force, n, rows)
         sine, cosine = turn * (sums[COSINE] + start * cosine), -turn * (sums[SINE] + start * sine)
         speed = w * (a * cosine - b * sine) + tip
         rows[n + 1, SPEED], rows[n + 1, SINE], rows[n + 1, COSINE] = speed, sine, cosine
@@ -261,10 +265,10 @@ def slopes(motion, run, series, weights):
     lever, steep, push = series.scalars[LEVER], series.scalars[STEEP], series.scalars[PUSH]
     (m, outer, inner), pushes = exponents(motion), 0.0 if run.regime == INSIDE else 1.0
     for n in range(ORDER):
-        steep[n] = power(rows, n, max(0, outer - 1))
+        steep[n] = power(rows, n, outer - 1)
         drag = outer * c * product(steep, rates, n) if c != 0.0 else 0.0
         weights.time[n], weights.force[n] = series.scalars[TIME, n], push[n]
-        weights.depth[n] = pushes * ((outer + inner) * k * power(rows, n, outer + inner - 1) + drag) / m
+        weights.depth[n] = pushes * ((outer + inner) * k * rows[n, COSINE + outer + inner - 1] + drag) / m
         weights.rate[n] = pushes * c * lever[n]
         weights.second[n] = pushes * product(lever, rates, n)
         weights.first[n] = (push[n] - c * weights.second[n]) / k
@@ -313,7 +317,7 @@ def longest_step(motion, speed, series):
     The modes move at each order m of sigma, and so does rho: one of the last m orders shows it.
     """
     (m, outer, inner), root, longest = exponents(motion), series.scalars[ROOT], math.inf
-    last = ORDER - max(2, m)
+    last = ORDER - m
     for n in range(ORDER, last, -1):
         top = greatest_speed(motion.modes, series.rows, n)
         longest = min(longest, EDGE + log_longest(top, n, speed))
