@@ -1,6 +1,6 @@
 """In touch with the stop: one file a law, chosen by the table `TOUCHES`.
 
-`newton`, `delayed`, `linear`, `power`   the laws
+`newton`, `delayed`, `linear`, `power`   the laws; `power` serves three of them, one in `power_law`
 `passage`                                a touch from strike to release, under any law, and its record
 `series`, `time_series`                  power series of a contact: what force laws share; in time
 `exchange`                               work, impulse and largest force of a step

@@ -1,68 +1,50 @@
 """A power of the depth with a dashpot: N = d^x (k d^y + c d') for d > 0.
 
-    HertzContact, HuntCrossley    x = 3/2, y = 0, c = k chi
-    PowerContact, c > 0           x = (p-1)/2, y = (p+1)/2, cut at zero force
+    HertzContact, HuntCrossley    x = 3/2, y = 0; the second number of the law is c/k
+    PowerContact, c > 0           x = (p-1)/2, y = (p+1)/2; the force is cut at zero
     PowerContact, c = 0           x = p, y = 0
-
-For y = 0 the second number of the law is c/k, and the force is not cut.
-
-Under ``PowerContact``, in w = d^((p+1)/2) and dtau = d^((p-1)/2) dt, a free mass M is a linear oscillator at
-every speed: w'' + (c/M) w' + (p+1)/2 (k/M) w = 0.
 
 The force has no Taylor series at d = 0, where every contact begins and ends.  Let m > 1 be the least number
 for which m x and m y are whole.  Take rho = d^(1/m) as an unknown of its own, and a variable sigma that runs
 slowly while the contact is shallow.  With l = m x + m - 1,
 
     dt/dsigma = rho^(m-1),  drho/dsigma = d'/m,  du/dsigma = rho^(m-1) v,
-    dv/dsigma = rho^(m-1) (g - c_k v - omega^2 u) - phi_k P,
-    P = rho^(m-1) N = rho^l G,  G = k rho^(m y) + c d',  d' = sum phi_k v + x_s'(t).
+    dv/dsigma = rho^(m-1) (g - c_k v - omega^2 u) - phi_k P,    d' = sum phi_k v + x_s'(t),
+    P = rho^(m-1) N = rho^l G,    G = k rho^(m y) + c d'.
 
 All right-hand sides are polynomials, so that the motion is analytic through touch and release, where rho
-changes sign (the substitution is Sundman's, Acta Math. 36 (1913) 105).  The coefficients of one order follow
-from sums over the orders before,
+changes sign (the substitution is Sundman's, Acta Math. 36 (1913) 105).  The coefficients of one order n
+follow from the orders before, by the sums
 
-    sum_j rho^(m-1)_(n-j) x_j    for x = d', sin(w t), cos(w t), all u and all v,
-    sum_j rho_(n-j) (rho^i)_j    for all powers of rho that are needed,
+    sum_j rho_(n-j) rho^i_j            for all powers of rho that are needed,
+    sum_j rho^(m-1)_(n-j) x_j          for x = d', sin(w t), cos(w t), all u and all v.
 
-which fill the columns of one array and are computed eight at a time (``contact.machine.vector_loops``).  For
-m = 2 both are the same call.  The term with the newest x_n is added separately, so that no sum waits for it.
-The cost of a step is the number of modes times the square of the order.
+All these are columns of one array, computed eight at a time (``contact.machine.vector_loops``); for m = 2 one
+call computes both sums.  The term with the newest x_n is added separately, so that no sum waits for it.  The
+cost of a step is the number of modes times the square of the order.
 
 A step ends at the sigma at which the last terms, in every mode and in rho, reach `TOLERANCE` of the modal
 speeds.  The energy of a lossless contact is conserved to that order.  A step ends earlier at the release,
 where rho falls to zero.  A force that is cut lets go where G falls to zero, before d does (regime INSIDE).
 There the tip moves without a force, until G rises through zero again, or the tip leaves.
-
-A force enters the speeds at the order m (p+1), its dashpot at half of it.  If it is above `WINDOW`, the terms
-of a step could all be small although the force is not.  Such a step reaches at most thrice the rho of its
-start, or the depth up to which the impulse of this force is below rounding.
 """
 
-from __future__ import annotations
-
 import math
-from dataclasses import dataclass, replace
-from fractions import Fraction
-from typing import ClassVar
 
 import numpy as np
 
-from beam.parameters import InvalidValue, final, require_within
 from contact.flight.elementary import EPS, sine_cosine
 from contact.flight.modal_flow import BRIEF, speed_scale, tip_rounding, tip_state, tip_sum
 from contact.flight.motion import SQUARE
-from contact.flight.polynomial_root import first_polynomial_root, horner, polynomial_root
-from contact.laws import POWER, ContactLaw
+from contact.flight.polynomial_root import first_fall, first_polynomial_root, horner, polynomial_root
 from contact.machine.compiled import kernel, part
 from contact.machine.vector_loops import LANES, next_modes, weighted_rows
-from contact.restitution import damping_ratio
 from contact.touch.exchange import exchange_of
-from contact.touch.series import WINDOW, limited_by_force, log_longest, powers_of
+from contact.touch.series import WINDOW, limited_by_force, log_longest, powers_of, product
 from contact.trajectory import CONTACT, INSIDE, OUTSIDE
 
 LAW, METHOD = "HertzContact, HuntCrossley or PowerContact", "contact-series"
 REGIMES = (OUTSIDE, CONTACT, INSIDE)
-MOST = WINDOW  # largest m of a `PowerContact`
 
 ORDER = 20  # order of the series in sigma, even: the cost per unit of time is flat from 16 to 24
 TOLERANCE = 1e-15  # last terms of a step over the modal speeds, at the rounding of the sum of all terms
@@ -86,100 +68,26 @@ RELAXED = 3.0
 INVERSE = 1.0 / np.maximum(1.0, np.arange(64.0))  # 1/n
 
 
-@final
-@dataclass(frozen=True, kw_only=True)
-class PowerContact(ContactLaw):
-    """Power of the depth with a dashpot: N = max(0, k d^p + c d^((p-1)/2) d') for d > 0.
-
-    For p = 3/2 it is the law of Y. Tsuji, T. Tanaka and T. Ishida (Powder Technol. 71 (1992) 239), cut at
-    zero force.  The restitution of a free mass is the same at every speed, for any exponent.
-
-    Parameters
-    ----------
-    stiffness : float
-        k, above zero [N/m^p].
-    exponent : float
-        p, from 1 to 3 [1]: a fraction with a denominator of at most 8.  With damping (p - 1)/2 must be such a
-        fraction: all halves, thirds and quarters are valid in both cases.
-    damping : float
-        c, zero or more [N s/m^((p+1)/2)].
-    """
-
-    stiffness: float
-    exponent: float
-    damping: float = 0.0
-    code: ClassVar[int] = POWER
-    units: ClassVar[dict[str, str]] = {"stiffness": "N/m^p", "damping": "N s/m^((p+1)/2)"}
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        given = require_within("exponent of the contact", self.exponent, "[1]", low=1.0, high=3.0)
-        nearest = self._fraction
-        if abs(given - float(nearest)) > 4.0 * EPS * given:
-            one = "with damping (p - 1)/2" if self.damping > 0.0 else "without damping it"
-            words = f"{one} must be a fraction with a denominator of at most {MOST}"
-            near = f"the nearest valid exponent is {nearest} = {float(nearest)!r}"
-            raise InvalidValue("exponent of the contact", f"is {given!r} [1]; {words}, and {near}")
-
-    @property
-    def _fraction(self) -> Fraction:
-        """The valid exponent next to the given one."""
-        part = 2 if self.damping > 0.0 else 1
-        return 1 + part * (Fraction(float(self.exponent) - 1.0) / part).limit_denominator(MOST)
-
-    @property
-    def adjustable(self) -> tuple[float, ...]:
-        """Stiffness and damping; only the stiffness without damping, as m may differ with it."""
-        return self.numbers if self.damping > 0.0 else self.numbers[:1]
-
-    @property
-    def table(self) -> np.ndarray:
-        """m, m x and m y, shape (1, 3); see ``contact.touch.power``."""
-        p = self._fraction
-        x, y = ((p - 1) / 2, (p + 1) / 2) if self.damping > 0.0 else (p, Fraction(0))
-        m = max(2, x.denominator)
-        return np.array([[float(m), float(m * x), float(m * y)]])
-
-    @staticmethod
-    def with_restitution(
-        *, stiffness: float, exponent: float, restitution: float, mass: float
-    ) -> PowerContact:
-        """The law under which a free `mass` m [kg] leaves with `restitution` times its approach speed.
-
-        `restitution` lies above 0 and is at most 1, and holds at every speed: c = 2 zeta sqrt((p + 1)/2 k m)
-        with zeta of ``contact.damping_ratio``.  `mass` is that of ``LinearContact.with_restitution``.
-        """
-        elastic = PowerContact(stiffness=stiffness, exponent=exponent)
-        mass = require_within("mass", mass, "kg", above=0)
-        rate = math.sqrt(0.5 * (elastic.exponent + 1.0) * elastic.stiffness * mass)
-        return replace(elastic, damping=2.0 * damping_ratio(restitution) * rate)
-
-
 @part
-def exponents(numbers):
-    """m, m x and m y."""
+def law_of(numbers):
+    """m, m x, m y and c."""
     table = numbers.table
-    return int(table[0, 0]), int(table[0, 1]), int(table[0, 2])
-
-
-@part
-def dashpot(numbers):
-    """c."""
-    return numbers.number1 * (numbers.number0 if numbers.table[0, 2] == 0.0 else 1.0)
+    m, outer, inner = int(table[0, 0]), int(table[0, 1]), int(table[0, 2])
+    return m, outer, inner, numbers.number1 * (numbers.number0 if inner == 0 else 1.0)
 
 
 @kernel
 def force(numbers, depth, rate):
     """N at penetration `depth` >= 0 and its `rate` [N]."""
-    m, outer, inner = exponents(numbers)
-    push = depth ** (outer / m) * (numbers.number0 * depth ** (inner / m) + dashpot(numbers) * rate)
+    m, outer, inner, c = law_of(numbers)
+    push = depth ** (outer / m) * (numbers.number0 * depth ** (inner / m) + c * rate)
     return max(0.0, push) if inner > 0 else push
 
 
 @kernel
 def stiffness(numbers, depth, rate):
     """dN/dd [N/m] and dN/dd' [N s/m]."""
-    (m, outer, inner), c = exponents(numbers), dashpot(numbers)
+    m, outer, inner, c = law_of(numbers)
     spring, steep = numbers.number0 * depth ** (inner / m), depth ** (outer / m - 1.0)
     if inner > 0 and spring + c * rate <= 0.0:
         return 0.0, 0.0
@@ -189,7 +97,7 @@ def stiffness(numbers, depth, rate):
 @kernel
 def series_size(motion):
     """Order and columns of the series: drive and powers of rho, filled up to eight, then u, then v."""
-    m, outer, inner = exponents(motion)
+    m, outer, inner, _c = law_of(motion)
     front = COSINE + 1 + max(outer + m - 1, outer + inner - 1, inner)
     return ORDER, (front + LANES - 1) // LANES * LANES + 2 * motion.modes.shape[1]
 
@@ -201,18 +109,6 @@ def power(rows, n, i):
 
 
 @part
-def product(x, y, n):
-    """Order n of the product of two series; the newest terms are added last."""
-    even, odd = 0.0, 0.0
-    for i in range(1, n - 1, 2):
-        even += x[i] * y[n - i]
-        odd += x[i + 1] * y[n - i - 1]
-    if n > 0 and n % 2 == 0:
-        even += x[n - 1] * y[1]
-    return even + odd + x[0] * y[n] + (x[n] * y[0] if n > 0 else 0.0)
-
-
-@part
 def fill(motion, base, u, v, pushes, series):
     """The Taylor coefficients in sigma from (u, v) at drive time `base` [s], with or without the force.
 
@@ -220,11 +116,11 @@ def fill(motion, base, u, v, pushes, series):
     at shallow depth.
     """
     rows, sums, modes, w, scalars = series.rows, series.sums, motion.modes, motion.drive, series.scalars
-    a, b, k, c = motion.tip_sine, motion.tip_cosine, motion.number0, dashpot(motion)
+    a, b, k, (m, outer, inner, c) = motion.tip_sine, motion.tip_cosine, motion.number0, law_of(motion)
     root, clock, push, lets_go = scalars[ROOT], scalars[CLOCK], scalars[PUSH], scalars[LETS_GO]
-    time, lever, (m, outer, inner) = scalars[TIME], scalars[LEVER], exponents(motion)
+    time, lever, rho = scalars[TIME], scalars[LEVER], root[0]
     lift, at_v, share, unit = outer + m - 1, rows.shape[1] - modes.shape[1], 1.0 / m, 1.0 if c != 0.0 else k
-    at_u, top, rho = at_v - modes.shape[1], max(lift, outer + inner - 1, inner), root[0]
+    at_u, top = at_v - modes.shape[1], max(lift, outer + inner - 1, inner)
     front = sums if m == 2 else sums[:at_u]
     sine, cosine = sine_cosine(w * base, 0.0)
     speed = tip_sum(motion, w * (a * cosine - b * sine), v)
@@ -261,9 +157,9 @@ def fill(motion, base, u, v, pushes, series):
 @kernel
 def slopes(motion, run, series, weights):
     """The series for the tangents: rho^(m-1) times 1, dN/dd, dN/dd', N and its slopes by the two numbers."""
-    rows, rates, k, c = series.rows, series.rows[:, SPEED], motion.number0, dashpot(motion)
+    (m, outer, inner, c), k, pushes = law_of(motion), motion.number0, 0.0 if run.regime == INSIDE else 1.0
+    rows, rates, rises = series.rows, series.rows[:, SPEED], series.rows[:, COSINE + inner]
     lever, steep, push = series.scalars[LEVER], series.scalars[STEEP], series.scalars[PUSH]
-    (m, outer, inner), pushes = exponents(motion), 0.0 if run.regime == INSIDE else 1.0
     for n in range(ORDER):
         steep[n] = power(rows, n, outer - 1)
         drag = outer * c * product(steep, rates, n) if c != 0.0 else 0.0
@@ -271,9 +167,9 @@ def slopes(motion, run, series, weights):
         weights.depth[n] = pushes * ((outer + inner) * k * rows[n, COSINE + outer + inner - 1] + drag) / m
         weights.rate[n] = pushes * c * lever[n]
         weights.second[n] = pushes * product(lever, rates, n)
-        weights.first[n] = (push[n] - c * weights.second[n]) / k
+        weights.first[n] = pushes * product(lever, rises, n) if inner > 0 else push[n] / k
         if inner == 0:  # the second number is c/k
-            weights.first[n], weights.second[n] = push[n] / k, k * weights.second[n]
+            weights.second[n] *= k
     return ORDER
 
 
@@ -297,14 +193,18 @@ def greatest_speed(modes, rows, order):
 
 @part
 def farthest(motion, speed, root):
-    """The sigma up to which a step sees a force that enters the speeds beyond `WINDOW` orders."""
-    m, outer, inner = exponents(motion)
+    """The sigma up to which a step sees a force that enters the speeds beyond `WINDOW` orders.
+
+    All terms of such a step could be small although the force is not.  It reaches at most thrice the rho of
+    its start, or the depth up to which the impulse of this force is below rounding.
+    """
+    m, outer, inner, c = law_of(motion)
     entry = outer + inner + m  # m (p + 1)
     allowed = 0.5 * entry / m * TOLERANCE * speed / math.sqrt(motion.inverse_mass)
     # the impulse k d^(p+1)/((p+1) d'), d' = m root[1], and that of the dashpot, 2 c d^((p+1)/2)/(p+1)
     negligible = (2.0 * allowed * m * abs(root[1]) / motion.number0) ** (1.0 / entry)
     if inner > WINDOW:
-        negligible = min(negligible, (allowed / motion.number1) ** (1.0 / inner))
+        negligible = min(negligible, (allowed / c) ** (1.0 / inner))
     way = max(2.0 * root[0], negligible - root[0])
     s = way / abs(root[1]) if root[1] != 0.0 else math.inf
     return min(s, math.sqrt(way / abs(root[2]))) if root[2] != 0.0 and way > 0.0 else s
@@ -316,47 +216,28 @@ def longest_step(motion, speed, series):
 
     The modes move at each order m of sigma, and so does rho: one of the last m orders shows it.
     """
-    (m, outer, inner), root, longest = exponents(motion), series.scalars[ROOT], math.inf
-    last = ORDER - m
-    for n in range(ORDER, last, -1):
+    (m, outer, inner, c), root, longest = law_of(motion), series.scalars[ROOT], math.inf
+    for n in range(ORDER, ORDER - m, -1):
         top = greatest_speed(motion.modes, series.rows, n)
         longest = min(longest, EDGE + log_longest(top, n, speed))
-    # rho must be resolved as well as the modes, relative to the larger of its first two terms.  Under a
-    # contact so soft that the modes give no bound, some terms of rho vanish, and the last may give none.
-    for n in range(ORDER, last, -1):
+        # rho must be resolved as well as the modes, relative to the larger of its first two terms: under a
+        # contact so soft that the modes give no bound, it gives one
         if root[n] != 0.0 and (root[0] != 0.0 or root[1] != 0.0):
             whole = log_longest(abs(root[n]), n, abs(root[0])) if root[0] != 0.0 else -math.inf
             linear = log_longest(abs(root[n]), n - 1, abs(root[1])) if root[1] != 0.0 else -math.inf
-            bound = EDGE + max(whole, linear)
-            if n == ORDER or bound < longest - FAR:
-                longest = min(longest, bound)
+            if n == ORDER or EDGE + max(whole, linear) < longest - FAR:
+                longest = min(longest, EDGE + max(whole, linear))
     push, mobility = series.scalars[PUSH], math.sqrt(motion.inverse_mass)
     s = limited_by_force(math.exp(longest), push, ORDER - 1, mobility, speed, math.exp(EDGE))
     if outer + inner + m > WINDOW:
         s = min(s, farthest(motion, speed, root))
     if root[1] < 0.0 < root[0]:  # stop well behind the release: without a force the terms give no bound
         s = min(s, -4.0 * root[0] / root[1])
-    if motion.number1 == 0.0:
+    if c == 0.0:
         return s
     # the dissipation is largest at the deeper end of the step
     deep = max(root[0], horner(root, 1.0, 0.0, s)[0]) if s < math.inf else root[0]
-    return min(s, RELAXED / (motion.inverse_mass * dashpot(motion) * deep ** (outer + m - 1.0)))
-
-
-@part
-def release_in(r, s):
-    """The sigma in (0, s] at which r falls to zero, or -1."""
-    rest, power = 0.0, s
-    for n in range(2, ORDER + 1):
-        power *= s
-        rest += abs(r[n]) * power
-    start, drift = abs(r[0]), r[1] * s
-    size = start + abs(drift) + rest
-    margin = 2.0 * EPS * size
-    # r >= r_0 + (r_1 - rest/s) sigma if this bound grows, and always r >= r_0 - |drift| - rest
-    if drift - rest > margin or start - abs(drift) - rest > margin:
-        return -1.0
-    return first_polynomial_root(r, -1.0, s, EPS * size)
+    return min(s, RELAXED / (motion.inverse_mass * c * deep ** (outer + m - 1.0)))
 
 
 @kernel
@@ -375,7 +256,7 @@ def first_depth(motion, run, u, v):
 @kernel
 def step(motion, run, u, v, limit, series):
     """One step from (u, v), at most `limit` [s]; see ``contact.touch``."""
-    root, clock, (m, _outer, inner) = series.scalars[ROOT], series.scalars[CLOCK], exponents(motion)
+    root, clock, (m, _outer, inner, c) = series.scalars[ROOT], series.scalars[CLOCK], law_of(motion)
     if inner == 0:  # the force is not cut
         run.regime = CONTACT
     if run.memory1 < 0.0:
@@ -389,11 +270,11 @@ def step(motion, run, u, v, limit, series):
     s = longest_step(motion, run.memory1, series)
     if not (0.0 < s < math.inf):
         return math.nan, math.nan, CONTACT
-    end, following = release_in(root, s), regime
+    end, following = first_fall(root, s), regime
     if end >= 0.0:
         s, following = end, OUTSIDE
     if inner > 0:
-        margin = 4.0 * EPS * motion.number1 * math.sqrt(motion.inverse_mass) * run.memory1
+        margin = 4.0 * EPS * c * math.sqrt(motion.inverse_mass) * run.memory1
         end = first_polynomial_root(series.scalars[LETS_GO], -1.0 if regime == CONTACT else 1.0, s, margin)
         if 0.0 <= end < s:
             s, following = end, INSIDE if regime == CONTACT else CONTACT
