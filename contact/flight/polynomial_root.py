@@ -77,7 +77,7 @@ def first_polynomial_root(coefficients, sign, end, margin):
 
 @part
 def first_fall(r, s):
-    """The first place in (0, `s`] at which a polynomial `r` falls to zero, or -1; it is zero or more at zero."""
+    """The first place in (0, `s`] at which a polynomial falls to zero, or -1; at zero it is zero or more."""
     rest, power = 0.0, s
     for n in range(2, r.size):
         power *= s

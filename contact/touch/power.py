@@ -257,8 +257,6 @@ def first_depth(motion, run, u, v):
 def step(motion, run, u, v, limit, series):
     """One step from (u, v), at most `limit` [s]; see ``contact.touch``."""
     root, clock, (m, _outer, inner, c) = series.scalars[ROOT], series.scalars[CLOCK], law_of(motion)
-    if inner == 0:  # the force is not cut
-        run.regime = CONTACT
     if run.memory1 < 0.0:
         run.memory1 = speed_scale(motion, u, v)
     if run.memory0 < 0.0:
