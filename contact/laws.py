@@ -198,7 +198,7 @@ class HertzContact(ContactLaw):
 
     @property
     def table(self) -> np.ndarray:
-        """The exponent 3/2, as ``contact.touch.power`` reads it."""
+        """m, m x and m y of ``contact.touch.power``, with x = 3/2 and y = 0."""
         return np.array([[2.0, 3.0, 0.0]])
 
     @staticmethod
@@ -260,7 +260,7 @@ class HuntCrossley(ContactLaw):
 
     @property
     def table(self) -> np.ndarray:
-        """The exponent 3/2, as ``contact.touch.power`` reads it."""
+        """m, m x and m y of ``contact.touch.power``, with x = 3/2 and y = 0."""
         return np.array([[2.0, 3.0, 0.0]])
 
     @staticmethod

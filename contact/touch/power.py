@@ -51,7 +51,7 @@ TOLERANCE = 1e-15  # last terms of a step over the modal speeds, at the rounding
 EDGE = math.log(TOLERANCE) / ORDER  # logarithm of a step over the radius of convergence
 FAR = math.log(1.5)
 """Logarithm of a factor.  Terms of rho before the last limit a step only if their bound is shorter than the
-others by this factor: where the modes take part, the last terms agree within it."""
+others by this factor.  Where the modes take part, the last terms agree within it."""
 
 SPEED, SINE, COSINE = range(3)
 """Columns of the series in front of the modes: d', sine and cosine of the drive; powers of rho follow."""

@@ -22,7 +22,7 @@ from contact.laws import POWER, ContactLaw
 from contact.restitution import damping_ratio
 from contact.touch.series import WINDOW
 
-MOST = WINDOW  # largest m: a mode moves at each order m of sigma, and `WINDOW` last orders limit a step
+MOST = WINDOW  # largest m: the modes move at each order m of sigma, the last `WINDOW` orders limit a step
 
 
 @final
