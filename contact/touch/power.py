@@ -4,8 +4,8 @@
     PowerContact, c > 0           x = (p-1)/2, y = (p+1)/2; the force is cut at zero
     PowerContact, c = 0           x = p, y = 0
 
-The force has no Taylor series at d = 0, where every contact begins and ends.  Let m > 1 be the least number
-for which m x and m y are whole.  Take rho = d^(1/m) as an unknown of its own, and a variable sigma that runs
+The force has no Taylor series at d = 0, where every contact begins and ends.  Let m be the least number for
+which m x and m y are whole.  Take rho = d^(1/m) as an unknown of its own, and a variable sigma that runs
 slowly while the contact is shallow.  With l = m x + m - 1,
 
     dt/dsigma = rho^(m-1),  drho/dsigma = d'/m,  du/dsigma = rho^(m-1) v,
@@ -137,14 +137,15 @@ def fill(motion, base, u, v, pushes, series):
         for i in range(COSINE + 1, COSINE + lift):
             value = front[i] + rho * value
             rows[n, i + 1] = value
-        lever[n], force = value, value
-        for i in range(COSINE + lift, COSINE + top):
+        force = value if lift > 0 else power(rows, n, 0)
+        lever[n] = force
+        for i in range(COSINE + max(1, lift), COSINE + top):
             value = front[i] + rho * value
             rows[n, i + 1] = value
         if c != 0.0:
             lets_go[n] = k * power(rows, n, inner) + c * speed
             force = product(lever, lets_go, n) if pushes else 0.0
-        push[n], time[n] = unit * force, rows[n, COSINE + m - 1]
+        push[n], time[n] = unit * force, power(rows, n, m - 1)
         if m != 2:
             weighted_rows(time, n, -1, rows, n, sums)
         clock[n + 1], start = inverse * time[n], time[0]
@@ -164,7 +165,7 @@ def slopes(motion, run, series, weights):
         steep[n] = power(rows, n, outer - 1)
         drag = outer * c * product(steep, rates, n) if c != 0.0 else 0.0
         weights.time[n], weights.force[n] = series.scalars[TIME, n], push[n]
-        weights.depth[n] = pushes * ((outer + inner) * k * rows[n, COSINE + outer + inner - 1] + drag) / m
+        weights.depth[n] = pushes * ((outer + inner) * k * power(rows, n, outer + inner - 1) + drag) / m
         weights.rate[n] = pushes * c * lever[n]
         weights.second[n] = pushes * product(lever, rates, n)
         weights.first[n] = pushes * product(lever, rises, n) if inner > 0 else push[n] / k
@@ -217,7 +218,7 @@ def longest_step(motion, speed, series):
     The modes move at each order m of sigma, and so does rho: one of the last m orders shows it.
     """
     (m, outer, inner, c), root, longest = law_of(motion), series.scalars[ROOT], math.inf
-    for n in range(ORDER, ORDER - m, -1):
+    for n in range(ORDER, ORDER - max(2, m), -1):
         top = greatest_speed(motion.modes, series.rows, n)
         longest = min(longest, EDGE + log_longest(top, n, speed))
         # rho must be resolved as well as the modes, relative to the larger of its first two terms: under a

@@ -76,8 +76,7 @@ class PowerContact(ContactLaw):
         """m, m x and m y, shape (1, 3); see ``contact.touch.power``."""
         p = self._fraction
         x, y = ((p - 1) / 2, (p + 1) / 2) if self.damping > 0.0 else (p, Fraction(0))
-        m = max(2, x.denominator)
-        return np.array([[float(m), float(m * x), float(m * y)]])
+        return np.array([[float(x.denominator * each) for each in (1, x, y)]])
 
     @staticmethod
     def with_restitution(
