@@ -48,7 +48,7 @@ REGIMES = (OUTSIDE, CONTACT, INSIDE)
 
 ORDER = 20  # order of the series in sigma, even: the cost per unit of time is flat from 16 to 24
 TOLERANCE = 1e-15  # last terms of a step over the modal speeds, at the rounding of the sum of all terms
-EDGE = math.log(TOLERANCE) / ORDER  # logarithm of a step over the radius of convergence
+EDGE = TOLERANCE ** (1.0 / ORDER)  # step over the radius of convergence
 FAR = math.log(1.5)
 """Logarithm of a factor.  Terms of rho before the last limit a step only if their bound is shorter than the
 others by this factor.  Where the modes take part, the last terms agree within it."""
@@ -134,14 +134,10 @@ def fill(motion, base, u, v, pushes, series):
         weighted_rows(root, n, -1, rows, n, front)
         root[n + 1], turn = share * inverse * speed, w * inverse
         rows[n, COSINE + 1] = value
-        for i in range(COSINE + 1, COSINE + lift):
+        for i in range(COSINE + 1, COSINE + top):
             value = front[i] + rho * value
             rows[n, i + 1] = value
-        force = value if lift > 0 else power(rows, n, 0)
-        lever[n] = force
-        for i in range(COSINE + max(1, lift), COSINE + top):
-            value = front[i] + rho * value
-            rows[n, i + 1] = value
+        lever[n], force = power(rows, n, lift), value  # without damping l is the highest power
         if c != 0.0:
             lets_go[n] = k * power(rows, n, inner) + c * speed
             force = product(lever, lets_go, n) if pushes else 0.0
@@ -220,16 +216,16 @@ def longest_step(motion, speed, series):
     (m, outer, inner, c), root, longest = law_of(motion), series.scalars[ROOT], math.inf
     for n in range(ORDER, ORDER - max(2, m), -1):
         top = greatest_speed(motion.modes, series.rows, n)
-        longest = min(longest, EDGE + log_longest(top, n, speed))
+        longest = min(longest, log_longest(top, n, speed))
         # rho must be resolved as well as the modes, relative to the larger of its first two terms: under a
         # contact so soft that the modes give no bound, it gives one
         if root[n] != 0.0 and (root[0] != 0.0 or root[1] != 0.0):
             whole = log_longest(abs(root[n]), n, abs(root[0])) if root[0] != 0.0 else -math.inf
             linear = log_longest(abs(root[n]), n - 1, abs(root[1])) if root[1] != 0.0 else -math.inf
-            if n == ORDER or EDGE + max(whole, linear) < longest - FAR:
-                longest = min(longest, EDGE + max(whole, linear))
+            if n == ORDER or max(whole, linear) < longest - FAR:
+                longest = min(longest, max(whole, linear))
     push, mobility = series.scalars[PUSH], math.sqrt(motion.inverse_mass)
-    s = limited_by_force(math.exp(longest), push, ORDER - 1, mobility, speed, math.exp(EDGE))
+    s = limited_by_force(EDGE * math.exp(longest), push, ORDER - 1, mobility, speed, EDGE)
     if outer + inner + m > WINDOW:
         s = min(s, farthest(motion, speed, root))
     if root[1] < 0.0 < root[0]:  # stop well behind the release: without a force the terms give no bound
