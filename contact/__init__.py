@@ -85,7 +85,7 @@ from contact.restitution import MeasuredRestitution, damping_ratio, restitution_
 from contact.simulation import simulate
 from contact.stop import Stop
 from contact.touch.delayed import DelayedRestitution
-from contact.touch.power import PowerContact
+from contact.touch.power_law import PowerContact
 from contact.trajectory import ImpactKind, Impacts, Regime, State, Trajectory
 
 __version__ = "0.9.0"

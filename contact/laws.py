@@ -27,7 +27,7 @@ from beam.parameters import final, require_within, suspect
 from contact.restitution import damping_ratio
 from contact.speed_table import SPEEDS, Points, SpeedFunction, raised, require_points, require_speeds, sampled
 
-NEWTON, LINEAR, HERTZ = 0, 1, 2
+NEWTON, LINEAR, POWER = 0, 1, 2
 """Codes of the laws in this file; another law stands with its code and its compiled part in one file of
 ``contact.touch``, as ``DelayedRestitution`` does."""
 
@@ -193,8 +193,13 @@ class HertzContact(ContactLaw):
     """
 
     stiffness: float
-    code: ClassVar[int] = HERTZ
+    code: ClassVar[int] = POWER
     units: ClassVar[dict[str, str]] = {"stiffness": "N/m^1.5"}
+
+    @property
+    def table(self) -> np.ndarray:
+        """m, m x and m y of ``contact.touch.power``, with x = 3/2 and y = 0."""
+        return np.array([[2.0, 3.0, 0.0]])
 
     @staticmethod
     def of_bodies(
@@ -250,8 +255,13 @@ class HuntCrossley(ContactLaw):
 
     stiffness: float
     dissipation: float
-    code: ClassVar[int] = HERTZ
+    code: ClassVar[int] = POWER
     units: ClassVar[dict[str, str]] = {"stiffness": "N/m^1.5", "dissipation": "s/m"}
+
+    @property
+    def table(self) -> np.ndarray:
+        """m, m x and m y of ``contact.touch.power``, with x = 3/2 and y = 0."""
+        return np.array([[2.0, 3.0, 0.0]])
 
     @staticmethod
     def with_restitution(*, stiffness: float, restitution: float, velocity: float) -> HuntCrossley:

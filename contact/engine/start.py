@@ -13,9 +13,10 @@ from contact.flight.sampled_crossing import Samples
 from contact.oscillator import ImpactOscillator
 from contact.touch import TOUCHES, force, strike
 from contact.touch.passage import STATE, open_touch
-from contact.trajectory import OUTSIDE, SUSTAINED, WAITING, ImpactKind, Regime, Run, State, Trajectory
+from contact.trajectory import INSIDE, OUTSIDE, SUSTAINED, WAITING, ImpactKind, Regime, Run, State, Trajectory
 
 HELD_WITHIN = 1e3  # largest distance from the gap of a tip that rests on the wall, in rounding bounds
+FAST = 1e300  # a rate at which any dashpot pulls more than a spring pushes [m/s]
 
 FAILURES: dict[int, tuple[type[ContactError], str]] = {
     loop.FAILED_CROSSING: (UnresolvedCrossing, ""),
@@ -74,6 +75,9 @@ def start_of(
     height, velocity, _acceleration = tip_state(motion, clock, u, v)
     rounding = tip_rounding(motion, u, v)
     near = HELD_WITHIN * rounding
+    behind = regime == INSIDE or (regime == OUTSIDE and height > rounding)
+    if behind and INSIDE in known and force(motion, 1.0, -FAST) != 0.0:  # the force is never cut at zero
+        known = tuple(each for each in known if each != INSIDE)
     if regime not in known:
         words = f"with this contact law it must be one of {known}"
         raise InvalidValue(f"regime of the state is {regime}; {words}")
@@ -88,8 +92,8 @@ def start_of(
                 f"displacement of the state puts the tip {height:.3g} m behind the stop; with an impact law "
                 "it must start on the near side"
             )
-        pushes = Regime.INSIDE not in known or force(motion, height, velocity) > 0.0
-        regime = Regime.CONTACT if pushes else Regime.INSIDE
+        pushes = INSIDE not in known or force(motion, height, velocity) > 0.0
+        regime = Regime.CONTACT if pushes else INSIDE
     runs[0] = (regime, 0, period, 0, 0, clock, state.wait, state.rebound, -1.0, -1.0)
     if regime == OUTSIDE and height >= -rounding:
         order, leaves = first_motion(motion, clock, u, v)

@@ -8,7 +8,7 @@ import math
 
 from contact.flight.bounds import PEAK, ROOT, SKIP, certify
 from contact.flight.elementary import EPS
-from contact.machine.compiled import kernel
+from contact.machine.compiled import kernel, part
 
 
 @kernel
@@ -73,6 +73,22 @@ def first_polynomial_root(coefficients, sign, end, margin):
             h = end
             least *= 2.0
     return -1.0
+
+
+@part
+def first_fall(r, s):
+    """The first place in (0, `s`] at which a polynomial falls to zero, or -1; at zero it is zero or more."""
+    rest, power = 0.0, s
+    for n in range(2, r.size):
+        power *= s
+        rest += abs(r[n]) * power
+    start, drift = abs(r[0]), r[1] * s
+    size = start + abs(drift) + rest
+    margin = 2.0 * EPS * size
+    # r >= r_0 + (r_1 - rest/s) x if this bound grows, and always r >= r_0 - |drift| - rest
+    if drift - rest > margin or start - abs(drift) - rest > margin:
+        return -1.0
+    return first_polynomial_root(r, -1.0, s, EPS * size)
 
 
 @kernel

@@ -116,8 +116,8 @@ def weighted_rows(_context, weights, top, step, rows, count, out):
 def next_modes(_context, numbers, earlier, r0, inverse, r_now, r_force, n, series):
     """Compute order n + 1 of all modes in a contact, and return sum_k phi_k v_k of that order.
 
-    `series` holds u in columns 8 to 8 + m, then v.  `earlier` holds the sums of r u and r v without their
-    last terms, and `numbers` the rows c, omega^2, phi and g.  See ``contact.touch.hertz``.
+    The last columns of `series` hold u and then v.  `earlier` holds the sums of r u and r v without their
+    last terms, and `numbers` the rows c, omega^2, phi and g.  See ``contact.touch.power``.
     """
     real = types.float64
     signature = real(numbers, earlier, real, real, real, real, types.intp, series)
@@ -132,8 +132,8 @@ def next_modes(_context, numbers, earlier, r0, inverse, r_now, r_force, n, serie
         with cgutils.for_range(builder, builder.sdiv(number.length, lanes), intp=kind) as block:
             k = builder.mul(block.index, lanes)
             decay, square, phi, load = (number.eight(ir.Constant(kind, i), k) for i in range(4))
-            at_u = builder.add(k, lanes)
-            at_v = builder.add(at_u, number.length)
+            at_v = builder.add(builder.sub(row.length, number.length), k)
+            at_u = builder.sub(at_v, number.length)
             ru = _fused(builder, r0, row.eight(n, at_u), sums.eight(None, at_u))
             rv = _fused(builder, r0, row.eight(n, at_v), sums.eight(None, at_v))
             u = builder.fmul(inverse, rv)

@@ -1,6 +1,6 @@
 """In touch with the stop: one file a law, chosen by the table `TOUCHES`.
 
-`newton`, `delayed`, `linear`, `hertz`, `power`   the laws
+`newton`, `delayed`, `linear`, `power`   the laws; `power` serves three of them, one in `power_law`
 `passage`                                a touch from strike to release, under any law, and its record
 `series`, `time_series`                  power series of a contact: what force laws share; in time
 `exchange`                               work, impulse and largest force of a step
@@ -12,7 +12,7 @@ How to add a law, say N = k d^3
        is the names listed below.  For a force that is a polynomial in d and d' follow
        ``contact.touch.linear``: only `force`, `stiffness`, `step` and `slopes` are new.  `step` computes N[n]
        from d[0] ... d[n] (the cube by two products of series) and calls `extend` for the next order.  A force
-       with a root at d = 0 needs a variable in which it has none: ``contact.touch.hertz``.
+       with a root at d = 0 needs a variable in which it has none: ``contact.touch.power``.
     2. Its place in `TOUCHES`.
     3. Its export in ``contact/__init__.py``.
     4. A test: the contact of a free mass conserves energy, and agrees with an outside solver.
@@ -70,9 +70,9 @@ from functools import partial
 from types import ModuleType, SimpleNamespace
 from typing import Any, TypeVar
 
-from contact.laws import HERTZ, LINEAR, NEWTON
+from contact.laws import LINEAR, NEWTON, POWER
 from contact.machine.compiled import part
-from contact.touch import delayed, hertz, linear, newton, power, series, time_series
+from contact.touch import delayed, linear, newton, power, series, time_series
 
 Function = TypeVar("Function", bound=Callable[..., object])
 
@@ -88,8 +88,7 @@ TOUCHES = {
     NEWTON: offered(newton),
     delayed.DELAYED: offered(delayed),
     LINEAR: offered(linear),
-    HERTZ: offered(hertz),
-    power.POWER: offered(power),
+    POWER: offered(power),
 }
 """The laws by their codes."""
 

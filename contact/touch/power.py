@@ -1,205 +1,151 @@
-"""A power of the depth with a dashpot: N = max(0, k d^p + c d^((p-1)/2) d') for d > 0 (``PowerContact``).
+"""A power of the depth with a dashpot: N = d^x (k d^y + c d') for d > 0.
 
-In w = d^((p+1)/2) and dtau = d^((p-1)/2) dt a free mass m is a linear oscillator at every speed,
+    HertzContact, HuntCrossley    x = 3/2, y = 0; the second number of the law is c/k
+    PowerContact, c > 0           x = (p-1)/2, y = (p+1)/2; the force is cut at zero
+    PowerContact, c = 0           x = p, y = 0
 
-    w'' + (c/m) w' + (p+1)/2 (k/m) w = 0,      N = -2 m/(p+1) d^((p-1)/2) w''.
-
-The force has no Taylor series at d = 0.  As in ``contact.touch.hertz`` the motion is computed in a variable
-sigma in which all right-hand sides are polynomials.  With d = rho^m, a = m p and b = m (p-1)/2,
+The force has no Taylor series at d = 0, where every contact begins and ends.  Let m be the least number for
+which m x and m y are whole.  Take rho = d^(1/m) as an unknown of its own, and a variable sigma that runs
+slowly while the contact is shallow.  With l = m x + m - 1,
 
     dt/dsigma = rho^(m-1),  drho/dsigma = d'/m,  du/dsigma = rho^(m-1) v,
-    dv/dsigma = rho^(m-1) (g - c_k v - omega^2 u) - phi_k rho^l G,      G = k rho^h + c d',
+    dv/dsigma = rho^(m-1) (g - c_k v - omega^2 u) - phi_k P,    d' = sum phi_k v + x_s'(t),
+    P = rho^(m-1) N = rho^l G,    G = k rho^(m y) + c d'.
 
-with l = b + m - 1 and h = b + m, or without damping l = a - 1 and h = m.  The least m is taken for which a
-and, with damping, b are whole numbers.  The powers come from each other by products of two series, by a plan
-in the law's table, so that no kernel branches by exponent.
+All right-hand sides are polynomials, so that the motion is analytic through touch and release, where rho
+changes sign (the substitution is Sundman's, Acta Math. 36 (1913) 105).  The coefficients of one order n
+follow from the orders before, by the sums
 
-With damping the contact lets go where G falls to zero, before d does (regime INSIDE).  There the tip moves
-without a force, until G rises through zero again, or the tip leaves where rho falls to zero.
+    sum_j rho_(n-j) rho^i_j            for all powers of rho that are needed,
+    sum_j rho^(m-1)_(n-j) x_j          for x = d', sin(w t), cos(w t), all u and all v.
 
-A force enters the speeds at the order 2 (b + m), or b + m, of sigma.  If it is above `WINDOW`, the terms of a
-step could all be small although the force is not.  Such a step reaches at most thrice the rho of its start,
-or the depth up to which the impulse of this force is below rounding.
+All these are columns of one array, computed eight at a time (``contact.machine.vector_loops``); for m = 2 one
+call computes both sums.  The term with the newest x_n is added separately, so that no sum waits for it.  The
+cost of a step is the number of modes times the square of the order.
+
+A step ends at the sigma at which the last terms, in every mode and in rho, reach `TOLERANCE` of the modal
+speeds.  The energy of a lossless contact is conserved to that order.  A step ends earlier at the release,
+where rho falls to zero.  A force that is cut lets go where G falls to zero, before d does (regime INSIDE).
+There the tip moves without a force, until G rises through zero again, or the tip leaves.
 """
 
-from __future__ import annotations
-
 import math
-from dataclasses import dataclass, replace
-from fractions import Fraction
-from typing import ClassVar
 
 import numpy as np
 
-from beam.parameters import InvalidValue, final, require_within
 from contact.flight.elementary import EPS, sine_cosine
-from contact.flight.modal_flow import speed_scale, tip_sum
-from contact.flight.polynomial_root import first_polynomial_root, horner
-from contact.laws import ContactLaw
+from contact.flight.modal_flow import BRIEF, speed_scale, tip_rounding, tip_state, tip_sum
+from contact.flight.motion import SQUARE
+from contact.flight.polynomial_root import first_fall, first_polynomial_root, horner, polynomial_root
 from contact.machine.compiled import kernel, part
 from contact.machine.vector_loops import LANES, next_modes, weighted_rows
-from contact.restitution import damping_ratio
-from contact.touch import hertz
 from contact.touch.exchange import exchange_of
-from contact.touch.hertz import CLOCK, COSINE, INVERSE, ORDER, PUSH, ROOT, SINE, SPEED, TOLERANCE
-from contact.touch.power_plan import (
-    DASHPOT_SLOPE,
-    EFFECT,
-    EXPONENT,
-    FINENESS,
-    LEFT,
-    LEVER,
-    NUMBERS,
-    ONE,
-    PRODUCTS,
-    RIGHT,
-    RISE,
-    SLOPE,
-    TIME,
-    plan_of,
-)
-from contact.touch.series import WINDOW, limited_by_force, log_longest
+from contact.touch.series import WINDOW, limited_by_force, log_longest, powers_of, product
 from contact.trajectory import CONTACT, INSIDE, OUTSIDE
 
-LAW, METHOD = "PowerContact", "power-series"
+LAW, METHOD = "HertzContact, HuntCrossley or PowerContact", "contact-series"
 REGIMES = (OUTSIDE, CONTACT, INSIDE)
-POWER = 4  # code of the law
-MOST = WINDOW  # largest m: a mode moves at each order m of sigma, and `WINDOW` last orders limit a step
 
-series_size, series_variable, state = hertz.series_size, hertz.series_variable, hertz.state
+ORDER = 20  # order of the series in sigma, even: the cost per unit of time is flat from 16 to 24
+TOLERANCE = 1e-15  # last terms of a step over the modal speeds, at the rounding of the sum of all terms
+EDGE = TOLERANCE ** (1.0 / ORDER)  # step over the radius of convergence
+FAR = math.log(1.5)
+"""Logarithm of a factor.  Terms of rho before the last limit a step only if their bound is shorter than the
+others by this factor.  Where the modes take part, the last terms agree within it."""
 
-LETS_GO = 4
-"""Row of the scalar series that holds G."""
+SPEED, SINE, COSINE = range(3)
+"""Columns of the series in front of the modes: d', sine and cosine of the drive; powers of rho follow."""
+
+ROOT, CLOCK, PUSH, POWERS, LETS_GO, TIME = range(6)
+LEVER, STEEP = 8, 9
+"""Rows of the scalar series: rho, time since the start of the step, P, powers of sigma, G, rho^(m-1), rho^l,
+rho^(m x - 1); rows 6 and 7 are those of ``contact.touch.exchange``."""
+
+RELAXED = 3.0
+"""Longest step times the rate phi^2 dN/dd' at which the dissipation damps a disturbance.  A series of order
+20 keeps ten digits of exp(-3).  Beyond 8 the tangents grow, although the motion does not show it."""
+
+INVERSE = 1.0 / np.maximum(1.0, np.arange(64.0))  # 1/n
 
 
-@final
-@dataclass(frozen=True, kw_only=True)
-class PowerContact(ContactLaw):
-    """Power of the depth with a dashpot: N = max(0, k d^p + c d^((p-1)/2) d') for d > 0.
-
-    For p = 3/2 it is the law of Y. Tsuji, T. Tanaka and T. Ishida (Powder Technol. 71 (1992) 239), cut at
-    zero force.  The restitution of a free mass is the same at every speed, for any exponent.
-
-    Parameters
-    ----------
-    stiffness : float
-        k, above zero [N/m^p].
-    exponent : float
-        p, from 1 to 3 [1]: a fraction with a denominator of at most 8.  With damping (p - 1)/2 must be such a
-        fraction: all halves, thirds and quarters are valid in both cases.
-    damping : float
-        c, zero or more [N s/m^((p+1)/2)].
-    """
-
-    stiffness: float
-    exponent: float
-    damping: float = 0.0
-    code: ClassVar[int] = POWER
-    units: ClassVar[dict[str, str]] = {"stiffness": "N/m^p", "damping": "N s/m^((p+1)/2)"}
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        given = require_within("exponent of the contact", self.exponent, "[1]", low=1.0, high=3.0)
-        nearest = self._fraction
-        if abs(given - float(nearest)) > 4.0 * EPS * given:
-            one = "with damping (p - 1)/2" if self.damping > 0.0 else "without damping it"
-            words = f"{one} must be a fraction with a denominator of at most {MOST}"
-            near = f"the nearest valid exponent is {nearest} = {float(nearest)!r}"
-            raise InvalidValue("exponent of the contact", f"is {given!r} [1]; {words}, and {near}")
-
-    @property
-    def _fraction(self) -> Fraction:
-        """The valid exponent next to the given one."""
-        part = 2 if self.damping > 0.0 else 1
-        return 1 + part * (Fraction(float(self.exponent) - 1.0) / part).limit_denominator(MOST)
-
-    @property
-    def adjustable(self) -> tuple[float, ...]:
-        """Stiffness and damping; only the stiffness without damping, as m may differ with it."""
-        return self.numbers if self.damping > 0.0 else self.numbers[:1]
-
-    @property
-    def table(self) -> np.ndarray:
-        """The plan of the powers of rho; see `plan_of`."""
-        return plan_of(self._fraction, self.damping > 0.0)
-
-    @staticmethod
-    def with_restitution(
-        *, stiffness: float, exponent: float, restitution: float, mass: float
-    ) -> PowerContact:
-        """The law under which a free `mass` m [kg] leaves with `restitution` times its approach speed.
-
-        `restitution` lies above 0 and is at most 1, and holds at every speed: c = 2 zeta sqrt((p + 1)/2 k m)
-        with zeta of ``contact.damping_ratio``.  `mass` is that of ``LinearContact.with_restitution``.
-        """
-        elastic = PowerContact(stiffness=stiffness, exponent=exponent)
-        mass = require_within("mass", mass, "kg", above=0)
-        rate = math.sqrt(0.5 * (elastic.exponent + 1.0) * elastic.stiffness * mass)
-        return replace(elastic, damping=2.0 * damping_ratio(restitution) * rate)
+@part
+def law_of(numbers):
+    """m, m x, m y and c."""
+    table = numbers.table
+    m, outer, inner = int(table[0, 0]), int(table[0, 1]), int(table[0, 2])
+    return m, outer, inner, numbers.number1 * (numbers.number0 if inner == 0 else 1.0)
 
 
 @kernel
 def force(numbers, depth, rate):
     """N at penetration `depth` >= 0 and its `rate` [N]."""
-    lever = depth ** (0.5 * numbers.table[NUMBERS, EXPONENT] - 0.5)
-    return max(0.0, lever * (numbers.number0 * lever * depth + numbers.number1 * rate))
+    m, outer, inner, c = law_of(numbers)
+    push = depth ** (outer / m) * (numbers.number0 * depth ** (inner / m) + c * rate)
+    return max(0.0, push) if inner > 0 else push
 
 
 @kernel
 def stiffness(numbers, depth, rate):
     """dN/dd [N/m] and dN/dd' [N s/m]."""
-    p = numbers.table[NUMBERS, EXPONENT]
-    lever = depth ** (0.5 * p - 0.5)
-    spring, dashpot = numbers.number0 * lever, numbers.number1 * rate
-    if spring * depth + dashpot <= 0.0:
+    m, outer, inner, c = law_of(numbers)
+    spring, steep = numbers.number0 * depth ** (inner / m), depth ** (outer / m - 1.0)
+    if inner > 0 and spring + c * rate <= 0.0:
         return 0.0, 0.0
-    bend = 0.5 * (p - 1.0) * lever * dashpot / depth if dashpot != 0.0 else 0.0
-    return p * spring * lever + bend, numbers.number1 * lever
+    return steep * (outer * (spring + c * rate) + inner * spring) / m, c * steep * depth
+
+
+@kernel
+def series_size(motion):
+    """Order and columns of the series: drive and powers of rho, filled up to eight, then u, then v."""
+    m, outer, inner, _c = law_of(motion)
+    front = COSINE + 1 + max(outer + m - 1, outer + inner - 1, inner)
+    return ORDER, (front + LANES - 1) // LANES * LANES + 2 * motion.modes.shape[1]
 
 
 @part
-def product(x, y, n):
-    """Order n of the product of two series."""
-    total = 0.0
-    for i in range(n + 1):
-        total += x[i] * y[n - i]
-    return total
-
-
-@part
-def power(motion, series, number):
-    """The scalar series in the row that this number of the table names."""
-    return series.scalars[int(motion.table[NUMBERS, number])]
+def power(rows, n, i):
+    """Order n of rho^i."""
+    return rows[n, COSINE + i] if i > 0 else (1.0 if n == 0 else 0.0)
 
 
 @part
 def fill(motion, base, u, v, pushes, series):
     """The Taylor coefficients in sigma from (u, v) at drive time `base` [s], with or without the force.
 
-    On entry scalars[ROOT, 0] holds rho."""
+    On entry scalars[ROOT, 0] holds rho.  Computed anew from the tip displacement, rho would lose its digits
+    at shallow depth.
+    """
     rows, sums, modes, w, scalars = series.rows, series.sums, motion.modes, motion.drive, series.scalars
-    a, b, table, damping = motion.tip_sine, motion.tip_cosine, motion.table, motion.number1
+    a, b, k, (m, outer, inner, c) = motion.tip_sine, motion.tip_cosine, motion.number0, law_of(motion)
     root, clock, push, lets_go = scalars[ROOT], scalars[CLOCK], scalars[PUSH], scalars[LETS_GO]
-    time, lever, rise = power(motion, series, TIME), power(motion, series, LEVER), power(motion, series, RISE)
-    at_v, fineness, products = LANES + modes.shape[1], table[NUMBERS, FINENESS], int(table[NUMBERS, PRODUCTS])
+    time, lever, rho = scalars[TIME], scalars[LEVER], root[0]
+    lift, at_v, share, unit = outer + m - 1, rows.shape[1] - modes.shape[1], 1.0 / m, 1.0 if c != 0.0 else k
+    at_u, top = at_v - modes.shape[1], max(lift, outer + inner - 1, inner)
+    front = sums if m == 2 else sums[:at_u]
     sine, cosine = sine_cosine(w * base, 0.0)
     speed = tip_sum(motion, w * (a * cosine - b * sine), v)
-    for k in range(u.size):
-        rows[0, LANES + k] = u[k]
-        rows[0, at_v + k] = v[k]
+    for i in range(u.size):
+        rows[0, at_u + i] = u[i]
+        rows[0, at_v + i] = v[i]
     rows[0, SPEED], rows[0, SINE], rows[0, COSINE] = speed, sine, cosine
-    clock[0], push[ORDER], scalars[ONE, 0] = 0.0, 0.0, 1.0
+    clock[0], push[ORDER] = 0.0, 0.0
     for n in range(ORDER):
-        for i in range(products):
-            left, right = int(table[LEFT, i]), int(table[RIGHT, i])
-            scalars[ONE + 1 + i, n] = product(scalars[left], scalars[right], n)
-        lets_go[n] = motion.number0 * rise[n] + damping * speed
-        push[n] = product(lever, lets_go, n) if pushes else 0.0
-        inverse, start = INVERSE[n + 1], time[0]
-        weighted_rows(time, n, -1, rows, n, sums)
-        root[n + 1], clock[n + 1] = inverse / fineness * speed, inverse * time[n]
-        tip = next_modes(modes, sums, start, inverse, time[n], inverse * push[n], n, rows)
-        turn = w * inverse
+        inverse, value = INVERSE[n + 1], root[n]
+        weighted_rows(root, n, -1, rows, n, front)
+        root[n + 1], turn = share * inverse * speed, w * inverse
+        rows[n, COSINE + 1] = value
+        for i in range(COSINE + 1, COSINE + top):
+            value = front[i] + rho * value
+            rows[n, i + 1] = value
+        lever[n], force = power(rows, n, lift), value  # without damping l is the highest power
+        if c != 0.0:
+            lets_go[n] = k * power(rows, n, inner) + c * speed
+            force = product(lever, lets_go, n) if pushes else 0.0
+        push[n], time[n] = unit * force, power(rows, n, m - 1)
+        if m != 2:
+            weighted_rows(time, n, -1, rows, n, sums)
+        clock[n + 1], start = inverse * time[n], time[0]
+        tip = next_modes(modes, sums, start, inverse, time[n], unit * inverse * force, n, rows)
         sine, cosine = turn * (sums[COSINE] + start * cosine), -turn * (sums[SINE] + start * sine)
         speed = w * (a * cosine - b * sine) + tip
         rows[n + 1, SPEED], rows[n + 1, SINE], rows[n + 1, COSINE] = speed, sine, cosine
@@ -207,36 +153,55 @@ def fill(motion, base, u, v, pushes, series):
 
 @kernel
 def slopes(motion, run, series, weights):
-    """The series for the tangents: rho^(m-1) times 1, dN/dd, dN/dd', N, dN/dk and dN/dc."""
-    k, c, p, rates = motion.number0, motion.number1, motion.table[NUMBERS, EXPONENT], series.rows[:, SPEED]
-    time, lever, rise = power(motion, series, TIME), power(motion, series, LEVER), power(motion, series, RISE)
-    slope, dashpot = power(motion, series, SLOPE), power(motion, series, DASHPOT_SLOPE)
-    pushes, half = 0.0 if run.regime == INSIDE else 1.0, 0.5 * (p - 1.0) * c
+    """The series for the tangents: rho^(m-1) times 1, dN/dd, dN/dd', N and its slopes by the two numbers."""
+    (m, outer, inner, c), k, pushes = law_of(motion), motion.number0, 0.0 if run.regime == INSIDE else 1.0
+    rows, rates, rises = series.rows, series.rows[:, SPEED], series.rows[:, COSINE + inner]
+    lever, steep, push = series.scalars[LEVER], series.scalars[STEEP], series.scalars[PUSH]
     for n in range(ORDER):
-        weights.time[n], weights.force[n] = time[n], series.scalars[PUSH, n]
-        weights.depth[n] = pushes * (p * k * slope[n] + half * product(dashpot, rates, n))
+        steep[n] = power(rows, n, outer - 1)
+        drag = outer * c * product(steep, rates, n) if c != 0.0 else 0.0
+        weights.time[n], weights.force[n] = series.scalars[TIME, n], push[n]
+        weights.depth[n] = pushes * ((outer + inner) * k * power(rows, n, outer + inner - 1) + drag) / m
         weights.rate[n] = pushes * c * lever[n]
-        weights.first[n] = pushes * product(lever, rise, n)
         weights.second[n] = pushes * product(lever, rates, n)
+        weights.first[n] = pushes * product(lever, rises, n) if inner > 0 else push[n] / k
+        if inner == 0:  # the second number is c/k
+            weights.second[n] *= k
     return ORDER
 
 
 @kernel
 def exchange(motion, run, span, series, known):
     """What the tip gives to the stop: work, impulse and largest force; see ``contact.touch``."""
-    rate, time = series.rows[:, SPEED], power(motion, series, TIME)
+    rate, time = series.rows[:, SPEED], series.scalars[TIME]
     return exchange_of(series, series.scalars[PUSH], rate, time, span, known)
 
 
 @part
+def greatest_speed(modes, rows, order):
+    """The largest coefficient of this order among all v and omega u."""
+    m, top = modes.shape[1], 0.0
+    at_v = rows.shape[1] - m
+    for k in range(m):
+        u, v = rows[order, at_v - m + k], rows[order, at_v + k]
+        top = max(top, v * v, modes[SQUARE, k] * u * u)
+    return math.sqrt(top)
+
+
+@part
 def farthest(motion, speed, root):
-    """The sigma up to which a step sees each force that enters the speeds beyond `WINDOW` orders."""
-    m, p, e = motion.table[NUMBERS, FINENESS], motion.table[NUMBERS, EXPONENT], motion.table[NUMBERS, EFFECT]
-    allowed, negligible = 0.5 * (p + 1.0) * TOLERANCE * speed / math.sqrt(motion.inverse_mass), math.inf
-    if 2.0 * e > WINDOW:  # the impulse k d^(p+1)/((p+1) d'), d' = m root[1]
-        negligible = (2.0 * allowed * m * abs(root[1]) / motion.number0) ** (0.5 / e)
-    if motion.number1 > 0.0 and e > WINDOW:  # 2 c d^((p+1)/2)/(p+1)
-        negligible = min(negligible, (allowed / motion.number1) ** (1.0 / e))
+    """The sigma up to which a step sees a force that enters the speeds beyond `WINDOW` orders.
+
+    All terms of such a step could be small although the force is not.  It reaches at most thrice the rho of
+    its start, or the depth up to which the impulse of this force is below rounding.
+    """
+    m, outer, inner, c = law_of(motion)
+    entry = outer + inner + m  # m (p + 1)
+    allowed = 0.5 * entry / m * TOLERANCE * speed / math.sqrt(motion.inverse_mass)
+    # the impulse k d^(p+1)/((p+1) d'), d' = m root[1], and that of the dashpot, 2 c d^((p+1)/2)/(p+1)
+    negligible = (2.0 * allowed * m * abs(root[1]) / motion.number0) ** (1.0 / entry)
+    if inner > WINDOW:
+        negligible = min(negligible, (allowed / c) ** (1.0 / inner))
     way = max(2.0 * root[0], negligible - root[0])
     s = way / abs(root[1]) if root[1] != 0.0 else math.inf
     return min(s, math.sqrt(way / abs(root[2]))) if root[2] != 0.0 and way > 0.0 else s
@@ -244,33 +209,55 @@ def farthest(motion, speed, root):
 
 @part
 def longest_step(motion, speed, series):
-    """The sigma up to which the series holds: the last `WINDOW` orders of modes, rho and force are small."""
-    root, longest, size = series.scalars[ROOT], math.inf, math.log(TOLERANCE) / ORDER
-    for n in range(ORDER - WINDOW + 1, ORDER + 1):
-        top = hertz.greatest_speed(motion.modes, series.rows, n)
-        longest = min(longest, size + log_longest(top, n, speed))
+    """The sigma up to which the series holds: the last orders of modes, rho and force are small.
+
+    The modes move at each order m of sigma, and so does rho: one of the last m orders shows it.
+    """
+    (m, outer, inner, c), root, longest = law_of(motion), series.scalars[ROOT], math.inf
+    for n in range(ORDER, ORDER - max(2, m), -1):
+        top = greatest_speed(motion.modes, series.rows, n)
+        longest = min(longest, log_longest(top, n, speed))
+        # rho must be resolved as well as the modes, relative to the larger of its first two terms: under a
+        # contact so soft that the modes give no bound, it gives one
         if root[n] != 0.0 and (root[0] != 0.0 or root[1] != 0.0):
             whole = log_longest(abs(root[n]), n, abs(root[0])) if root[0] != 0.0 else -math.inf
             linear = log_longest(abs(root[n]), n - 1, abs(root[1])) if root[1] != 0.0 else -math.inf
-            longest = min(longest, size + max(whole, linear))
-    push, mobility, edge = series.scalars[PUSH], math.sqrt(motion.inverse_mass), TOLERANCE ** (1.0 / ORDER)
-    s = limited_by_force(math.exp(longest), push, ORDER - 1, mobility, speed, edge)
-    s = min(s, farthest(motion, speed, root))
+            if n == ORDER or max(whole, linear) < longest - FAR:
+                longest = min(longest, max(whole, linear))
+    push, mobility = series.scalars[PUSH], math.sqrt(motion.inverse_mass)
+    s = limited_by_force(EDGE * math.exp(longest), push, ORDER - 1, mobility, speed, EDGE)
+    if outer + inner + m > WINDOW:
+        s = min(s, farthest(motion, speed, root))
     if root[1] < 0.0 < root[0]:  # stop well behind the release: without a force the terms give no bound
         s = min(s, -4.0 * root[0] / root[1])
+    if c == 0.0:
+        return s
+    # the dissipation is largest at the deeper end of the step
     deep = max(root[0], horner(root, 1.0, 0.0, s)[0]) if s < math.inf else root[0]
-    rate = motion.inverse_mass * motion.number1 * deep ** (motion.table[NUMBERS, EFFECT] - 1.0)
-    return min(s, hertz.RELAXED / rate) if rate > 0.0 else s
+    return min(s, RELAXED / (motion.inverse_mass * c * deep ** (outer + m - 1.0)))
+
+
+@kernel
+def series_variable(motion, t, end, series):
+    """The sigma at which a time `t` [s] has passed, in a step up to `end`."""
+    return polynomial_root(series.scalars[CLOCK], 1.0, t, 0.0, end) if t > 0.0 else 0.0
+
+
+@part
+def first_depth(motion, run, u, v):
+    """The depth of a contact that begins: its rounding at least, as no sigma leads from rest at zero."""
+    moment = EPS * BRIEF * motion.period * run.memory1 * math.sqrt(motion.inverse_mass)  # where u = 0
+    return max(tip_rounding(motion, u, v), tip_state(motion, run.clock, u, v)[0], moment)
 
 
 @kernel
 def step(motion, run, u, v, limit, series):
     """One step from (u, v), at most `limit` [s]; see ``contact.touch``."""
-    root, clock, lets_go = series.scalars[ROOT], series.scalars[CLOCK], series.scalars[LETS_GO]
+    root, clock, (m, _outer, inner, c) = series.scalars[ROOT], series.scalars[CLOCK], law_of(motion)
     if run.memory1 < 0.0:
         run.memory1 = speed_scale(motion, u, v)
     if run.memory0 < 0.0:
-        run.memory0 = hertz.first_depth(motion, run, u, v) ** (1.0 / motion.table[NUMBERS, FINENESS])
+        run.memory0 = first_depth(motion, run, u, v) ** (1.0 / m)
     root[0], regime = run.memory0, run.regime
     fill(motion, run.clock, u, v, regime == CONTACT, series)
     if run.memory1 == 0.0:  # nothing moves
@@ -278,12 +265,12 @@ def step(motion, run, u, v, limit, series):
     s = longest_step(motion, run.memory1, series)
     if not (0.0 < s < math.inf):
         return math.nan, math.nan, CONTACT
-    end, following = hertz.release_in(root, s), regime
+    end, following = first_fall(root, s), regime
     if end >= 0.0:
         s, following = end, OUTSIDE
-    if motion.number1 > 0.0:
-        margin = 4.0 * EPS * motion.number1 * math.sqrt(motion.inverse_mass) * run.memory1
-        end = first_polynomial_root(lets_go, -1.0 if regime == CONTACT else 1.0, s, margin)
+    if inner > 0:
+        margin = 4.0 * EPS * c * math.sqrt(motion.inverse_mass) * run.memory1
+        end = first_polynomial_root(series.scalars[LETS_GO], -1.0 if regime == CONTACT else 1.0, s, margin)
         if 0.0 <= end < s:
             s, following = end, INSIDE if regime == CONTACT else CONTACT
     length = horner(clock, 1.0, 0.0, s)[0]
@@ -291,3 +278,15 @@ def step(motion, run, u, v, limit, series):
         s, length, following = series_variable(motion, limit, s, series), limit, regime
     run.memory0 = horner(root, 1.0, 0.0, s)[0]
     return s, length, following
+
+
+@kernel
+def state(motion, run, s, series, u, v):
+    """Deviations of all modes at sigma = `s`, in `u` and `v`."""
+    powers = series.scalars[POWERS]
+    powers_of(s, powers)
+    weighted_rows(powers, 0, 1, series.rows, ORDER + 1, series.sums)
+    at_v = series.sums.size - motion.modes.shape[1]
+    for k in range(u.size):
+        u[k] = series.sums[at_v - motion.modes.shape[1] + k]
+        v[k] = series.sums[at_v + k]

@@ -84,6 +84,18 @@ def improve(motion, log, states):
 
 
 @part
+def product(x, y, n):
+    """Order n of the product of two series; the newest terms are added last."""
+    even, odd = 0.0, 0.0
+    for i in range(1, n - 1, 2):
+        even += x[i] * y[n - i]
+        odd += x[i + 1] * y[n - i - 1]
+    if n > 0 and n % 2 == 0:
+        even += x[n - 1] * y[1]
+    return even + odd + x[0] * y[n] + (x[n] * y[0] if n > 0 else 0.0)
+
+
+@part
 def powers_of(s, out):
     """Fill `out` with 1, s, s^2, ..."""
     power = 1.0

@@ -9,16 +9,18 @@ from oscillators import modes_on_stop
 
 import contact
 from contact.integrators import EXACT_NAMES, INTEGRATORS, Exact, GeneralisedAlpha, Integrator
-from contact.laws import HERTZ, LINEAR, NEWTON
+from contact.laws import LINEAR, NEWTON, POWER
 from contact.touch.delayed import DELAYED
-from contact.touch.power import POWER
 
 LAWS: dict[int, tuple[contact.ContactLaw, ...]] = {
     NEWTON: (contact.NewtonRestitution(local_restitution=0.6),),
     DELAYED: (contact.DelayedRestitution(restitution=0.6, delay=4e-4),),
     LINEAR: (contact.LinearContact(stiffness=4e5), contact.LinearContact(stiffness=4e5, damping=20.0)),
-    HERTZ: (contact.HertzContact(stiffness=8e7), contact.HuntCrossley(stiffness=8e7, dissipation=0.2)),
-    POWER: (contact.PowerContact(stiffness=8e7, exponent=1.5, damping=150.0),),
+    POWER: (
+        contact.HertzContact(stiffness=8e7),
+        contact.HuntCrossley(stiffness=8e7, dissipation=0.2),
+        contact.PowerContact(stiffness=8e7, exponent=1.5, damping=150.0),
+    ),
 }
 """Laws soft enough for the coarsest method, one or two of each kind."""
 

@@ -101,7 +101,7 @@ def words_of(path: Path) -> set[str]:
 def test_what_serves_a_single_law_stands_in_its_file_alone():
     """`State` keeps the wait and the rebound of a delayed rebound: the one exception."""
     laws = [name for name, one in vars(contact).items() if getattr(one, "__mro__", ())[1:2] == (ContactLaw,)]
-    of_one = {*laws, *"newton delayed linear hertz power NEWTON DELAYED LINEAR HERTZ POWER".split()}
+    of_one = {*laws, *"newton delayed linear power NEWTON DELAYED LINEAR POWER".split()}
     of_one |= {"INSIDE", "SUSTAINED", "WAITING", "wait"}
     shared = "engine/event_loop flight/motion sensitivity/replay orbits/families/kick "
     for name in (shared + "orbits/observation/amplitude_scan engine/recorder sensitivity/change").split():

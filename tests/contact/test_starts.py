@@ -1,18 +1,21 @@
 """A tip that lies on the stop when the run begins: closed forms, and an outside solver."""
 
+import dataclasses
 import math
 
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from beam import ModalModel
+from beam import InvalidValue, ModalModel
 from contact import (
     HertzContact,
+    HuntCrossley,
     ImpactOscillator,
     LinearContact,
     NewtonRestitution,
     PowerContact,
+    Regime,
     State,
     Stop,
     simulate,
@@ -95,3 +98,16 @@ def test_a_start_that_moves_towards_the_stop_is_an_impact_and_one_without_force_
     run = simulate(oscillator, State(displacement=[0.3], velocity=[1.0]), duration=1.0)
     assert run.impacts.start.tolist() == [0.0] and run.impacts.approach.tolist() == [1.0]
     assert run.end.displacement[0] == pytest.approx(-0.2, abs=1e-15)
+
+
+UNCUT = [*(law for law, _ in LAWS.values()), HuntCrossley(stiffness=STIFF, dissipation=0.5)]
+
+
+@pytest.mark.parametrize("law", UNCUT)
+def test_only_a_force_that_is_cut_leaves_the_tip_free_behind_the_stop(law):
+    """Hunt and Crossley's force pulls a tip that moves out fast: such a start is in contact."""
+    oscillator, state = on_stop(law, 0.3, 1.0)
+    behind = State(displacement=state.displacement + 0.1, velocity=[-5.0])
+    assert simulate(oscillator, behind, duration=1e-6).end.regime == Regime.CONTACT
+    with pytest.raises(InvalidValue, match="regime"):
+        simulate(oscillator, dataclasses.replace(behind, regime=Regime.INSIDE), duration=1e-6)
