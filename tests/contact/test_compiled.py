@@ -26,7 +26,7 @@ def test_folders_of_older_sources_are_removed_when_nobody_uses_them(tmp_path):
 
 def test_machine_code_is_keyed_by_all_sources_on_which_it_rests():
     """What a file imports, through packages too: the event loop rests on each law, a law not on the loop."""
-    loop, law = PACKAGE / "engine" / "event_loop.py", PACKAGE / "touch" / "hertz.py"
+    loop, law = PACKAGE / "engine" / "event_loop.py", PACKAGE / "touch" / "power.py"
     assert {law, PACKAGE / "flight" / "elementary.py"} <= sources_of(loop)
     assert loop not in sources_of(law) and PACKAGE / "__init__.py" not in sources_of(loop)
     assert PACKAGE / "touch" / "newton.py" in sources_of(PACKAGE / "touch" / "__init__.py")
