@@ -56,10 +56,9 @@ others by this factor.  Where the modes take part, the last terms agree within i
 SPEED, SINE, COSINE = range(3)
 """Columns of the series in front of the modes: d', sine and cosine of the drive; powers of rho follow."""
 
-ROOT, CLOCK, PUSH, POWERS, LETS_GO, TIME = range(6)
-LEVER, STEEP = 8, 9
-"""Rows of the scalar series: rho, time since the start of the step, P, powers of sigma, G, rho^(m-1), rho^l,
-rho^(m x - 1); rows 6 and 7 are those of ``contact.touch.exchange``."""
+ROOT, CLOCK, PUSH, POWERS, LETS_GO, TIME, LEVER, STEEP = range(8)
+"""Rows of the scalar series: rho, time since the start of the step, P, powers of sigma, G, rho^(m-1), rho^l
+and rho^(m x - 1)."""
 
 RELAXED = 3.0
 """Longest step times the rate phi^2 dN/dd' at which the dissipation damps a disturbance.  A series of order

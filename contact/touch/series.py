@@ -32,7 +32,7 @@ class Series(NamedTuple):
 
     rows: np.ndarray  # coefficients of the modes, row n of order n, shape (order + 1, columns)
     sums: np.ndarray  # shape (columns,)
-    scalars: np.ndarray  # series of single numbers, rows named by each law, shape (24, order + 1)
+    scalars: np.ndarray  # series of single numbers, rows named by each law, shape (8, order + 1)
     scaled: np.ndarray  # for ``contact.touch.exchange``: P, d' and q of a step of length 1, (3, order + 1)
     places: np.ndarray  # for the same: numbers at places of the step, shape (4, 16)
 
@@ -41,7 +41,7 @@ class Series(NamedTuple):
 def new_series(order, columns):
     """A workspace of zeros."""
     rows, sums = aligned(order + 1, columns), aligned(1, columns)[0]
-    return Series(rows, sums, np.zeros((24, order + 1)), np.zeros((3, order + 1)), aligned(4, 16))
+    return Series(rows, sums, np.zeros((8, order + 1)), np.zeros((3, order + 1)), aligned(4, 16))
 
 
 @part
