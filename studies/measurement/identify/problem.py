@@ -5,6 +5,8 @@ from __future__ import annotations
 import copy
 import math
 import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,6 +43,14 @@ LAGS = 10
 
 TINY = 1e-300
 """Least ratio of a value to where it starts: a step along a tangent may round to zero."""
+
+
+@contextmanager
+def through_any_value() -> Iterator[None]:
+    """No warnings of suspicious values, as a search may pass through any."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", SuspiciousValue)
+        yield
 
 
 class Problem:
@@ -107,19 +117,19 @@ class Problem:
             self.last = unknowns.copy(), with_values(self.oscillator, own), values[n:]
         return self.last[1], self.last[2]
 
+    @through_any_value()
     def residuals(self, unknowns: Array) -> Array:
         """Residuals of rows and priors; not a number where there is no motion, which rejects the step."""
         try:
             if np.any(np.abs(unknowns - self.start) > self.farthest):
                 raise NoAnswer("free period or drive frequency is far from where the search begins")
-            with warnings.catch_warnings():  # a search may pass through any value
-                warnings.simplefilter("ignore", SuspiciousValue)
-                predicted = self.prediction.values(*self.at(unknowns)).ravel()
+            predicted = self.prediction.values(*self.at(unknowns)).ravel()
         except (ContactError, Refusal):
             return np.full(self.observed.size + self.held.size, np.nan)
         off = (predicted - self.observed) * self.weights
         return np.concatenate([off, (unknowns - self.middle) * self.held])
 
+    @through_any_value()
     def jacobian(self, unknowns: Array) -> Array:
         """Shape (rows + unknowns, unknowns); NoAnswer if it is not finite."""
         rows = self.prediction.jacobian(*self.at(unknowns), self.names) * self.weights[:, None]

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from beam import Refusal
 from contact import ContactError
 from studies.measurement.identify.predictions import Prediction
-from studies.measurement.identify.problem import SETTLED, Problem
+from studies.measurement.identify.problem import SETTLED, Problem, through_any_value
 from studies.physics.parameters import with_values
 
 Array = NDArray[np.float64]
@@ -125,6 +125,7 @@ class Walk:
         rises = [self.rise_of(self.moved(self.best, way), self.best.prediction) for way in (-reach, reach)]
         return not all(abs(rise / reach**2 - 1.0) < BENT for rise in rises)
 
+    @through_any_value()
     def held(self, point: Point, step: float, last: Point | None) -> Point | None:
         """The fit with the parameter a step beyond a point; None if it does not settle."""
         values, problem = self.moved(point, step, last), self.problem
