@@ -32,8 +32,8 @@ The files: the problem and its answer
                         in ``touch``
     ``speed_table``     functions of the approach speed, such as a restitution, as tables
     ``restitution``     `damping_ratio` of a restitution; `restitution_from_bounces`
-    ``stop``            `Stop`: a gap and a law
-    ``oscillator``      `ImpactOscillator`: a ``beam.ModalModel``, a stop and a drive; the equation of motion
+    ``stop``            `Stop`: a gap, a law, and where it lies
+    ``oscillator``      `ImpactOscillator`: a ``beam.ModalModel``, stops and a drive; the equation of motion
     ``trajectory``      `State`, `Impacts`, `Trajectory`
     ``simulation``      `simulate`: a motion with every impact, exact or by a method with a time step
     ``virtual_motion``  the motion of mode 1 as if there were no stop
@@ -71,6 +71,7 @@ from contact.errors import (
     NoDerivative,
     NotPeriodic,
     StepTooLarge,
+    TouchedAtOnce,
     UnresolvedCrossing,
 )
 from contact.laws import ContactLaw, HertzContact, HuntCrossley, LinearContact, NewtonRestitution

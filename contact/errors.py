@@ -42,6 +42,12 @@ class UnresolvedCrossing(ContactError):
     reason = "a crossing of the stop could be neither excluded nor located"
 
 
+class TouchedAtOnce(ContactError):
+    """Two stops are touched at once: a second one is reached while the first is, or at the same instant."""
+
+    reason = "two stops are touched at once, which is not followed,"
+
+
 class Chatter(ContactError):
     """More impacts in one drive period than the bound allows."""
 

@@ -1,10 +1,11 @@
-"""The impact oscillator: modes of a spring, the motion of its base, and a stop.
+"""The impact oscillator: modes of a spring, the motion of its base, and one stop or several.
 
-    q_k'' + c_k q_k' + omega_k^2 q_k = -Gamma_k z''(t) + g_k - phi_k N(d, d')
-    x = sum_k phi_k q_k,   d = x - gap,   z = Z sin(2 pi f t)
+    q_k'' + c_k q_k' + omega_k^2 q_k = -Gamma_k z''(t) + g_k - sum_j phi_jk N_j(d_j, d_j')
+    x_j = sum_k phi_jk q_k,   d_j = x_j - gap_j,   z = Z sin(2 pi f t)
 
-with mass-normalised modes (q in m kg^0.5), x the tip displacement relative to the base [m], N >= 0 the
-contact force [N] and g_k an optional constant modal load [N kg^-0.5].  With one mode, phi = Gamma = 1 and
+with mass-normalised modes (q in m kg^0.5), x_j the displacement towards stop j relative to the base [m], N_j
+>= 0 the contact force [N] and g_k an optional constant modal load [N kg^-0.5].  A single stop is most often
+at the tip, and x is then its displacement.  With one mode, phi = Gamma = 1 and
 ``NewtonRestitution`` this is Eq. (1) of the letter (1996), whose F is Z (2 pi f)^2.
 
 Steady response without contact: q_k = Z Im(H_k exp(i 2 pi f t)), H_k = Gamma_k w^2 / (omega_k^2 - w^2 + i c_k
@@ -15,6 +16,7 @@ w), about the static displacement g_k/omega_k^2.  The tip just touches the stop 
 from __future__ import annotations
 
 import copy
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -27,15 +29,16 @@ from beam.parameters import (
     final,
     require,
     require_array,
+    require_each,
     require_kind,
     require_within,
     shown,
     suspect,
 )
 from contact.drive import HarmonicDrive
-from contact.flight.motion import Motion, motion_of, with_drive
+from contact.flight.motion import Motion, motion_of, stacked, with_drive
 from contact.laws import NewtonRestitution
-from contact.stop import Stop
+from contact.stop import Stop, check_apart
 
 GREATEST_GAP = 1.0  # gap beyond which a warning is given [m]; lengths in units of the gap give just this
 
@@ -54,42 +57,73 @@ def dynamic_stiffness(omega: np.ndarray, decay_rate: np.ndarray, w: float) -> np
     return np.asarray((omega - w) * (omega + w) + 1j * decay_rate * w)
 
 
+class _OnlyStop(tuple[Stop, ...]):
+    """The stops of an oscillator that was made with `stop`, which may be replaced."""
+
+
 @final
-@dataclass(frozen=True, kw_only=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False, init=False)
 class ImpactOscillator:
-    """A modal spring on a moving base, with a stop at its tip.
+    """A modal spring on a moving base, with one stop or several.
 
     Parameters
     ----------
     model : ModalModel
-        Modes: omega, decay_rate, phi, participation, each (n_modes,).
+        Modes: omega, decay_rate, phi, participation, each (n_modes,), and points by name.
     stop : Stop
-        Gap [m] and contact law.
+        The only stop; or give `stops`.
+    stops : sequence of Stop
+        Stops at points of the model, on either side.  Touches name them by their numbers from 0 on.
     drive : HarmonicDrive or None
         Base motion; None for a base at rest.
     load : ndarray, shape (n_modes,), optional
         Constant modal load [N kg^-0.5].
+
+    Simulation takes any number of stops.  What holds for a single stop at the tip, such as collisions, maps
+    and periodic orbits, refuses others in one sentence.
 
     A gap above `GREATEST_GAP`, or a drive amplitude above `GREATEST_AMPLITUDE` and ten gaps, brings a
     SuspiciousValue warning unless the model is `dimensionless`; so does a drive slower than `SLOWEST_DRIVE`.
     """
 
     model: ModalModel
-    stop: Stop
+    stops: tuple[Stop, ...]
     drive: HarmonicDrive | None = None
     load: np.ndarray | None = None
 
-    def __post_init__(self) -> None:
+    def __init__(
+        self,
+        *,
+        model: ModalModel,
+        stop: Stop | None = None,
+        stops: Sequence[Stop] | None = None,
+        drive: HarmonicDrive | None = None,
+        load: np.ndarray | None = None,
+    ) -> None:
+        if stop is not None and (stops is None or isinstance(stops, _OnlyStop)):
+            stops = _OnlyStop((require_kind("stop", stop, Stop, "a Stop"),))
+        require(
+            stop is None or isinstance(stops, _OnlyStop), "stop and stops are both given; give one of them"
+        )
+        require(stops is not None, "stop is missing; give a Stop, or several as stops")
+        require_each("stops", stops, Stop, "a sequence of Stop")
+        given = stops if isinstance(stops, _OnlyStop) else (_OnlyStop if len(stops) == 1 else tuple)(stops)
+        vars(self).update(model=model, stops=given, drive=drive, load=load)
+        self._check()
+
+    def _check(self) -> None:
+        """Refuse what cannot be followed, and warn of what can hardly be meant."""
         require_kind("model", self.model, ModalModel, "a ModalModel")
-        require_kind("stop", self.stop, Stop, "a Stop")
         require_kind("drive", self.drive, (HarmonicDrive, type(None)), "a HarmonicDrive or None")
+        require(len(self.stops) > 0, "stops is empty; it must hold at least one Stop")
         omega, decay = self.model.omega, self.model.decay_rate
-        law = self.stop.law
-        if law.one_mode_only and omega.size > 1:
-            raise InvalidType(
-                f"law of the stop is {type(law).__name__}, which holds for one mode; "
-                f"the model has {omega.size}, so give a force law or NewtonRestitution, or truncate the model"
-            )
+        check_apart(self.stops, self._rows)
+        for law in (stop.law for stop in self.stops):
+            if law.one_mode_only and omega.size > 1:
+                raise InvalidType(
+                    f"law of the stop is {type(law).__name__}, which holds for one mode; the model has "
+                    f"{omega.size}, so give a force law or NewtonRestitution, or truncate the model"
+                )
         if self.load is not None:
             words = f"{omega.size} finite modal loads"
             load = require_array("load", self.load, "N kg^-0.5", shape=omega.shape, words=words)
@@ -98,7 +132,8 @@ class ImpactOscillator:
             self._suspect_metres()
         if self.drive is None:
             return
-        require(self.stop.gap > 0, "gap", f"is {self.stop.gap} m; for a driven spring it must be above zero")
+        gap = min(stop.gap for stop in self.stops)
+        require(gap > 0, "gap", f"is {gap} m; for a driven spring it must be above zero")
         resonant = (omega == self.drive.angular_frequency) & (decay == 0)
         words = f"{self.drive.frequency:g} Hz, that of an undamped mode without steady motion; it must differ"
         require(not np.any(resonant), "frequency of the drive", f"is {words}")
@@ -106,7 +141,8 @@ class ImpactOscillator:
 
     def _suspect_metres(self) -> None:
         """Warn of a gap or an amplitude that no leaf spring and no exciter has."""
-        gap, amplitude = self.stop.gap, 0.0 if self.drive is None else self.drive.amplitude
+        gap = max(stop.gap for stop in self.stops)
+        amplitude = 0.0 if self.drive is None else self.drive.amplitude
         remedy = "millimetres may have been meant; in units of your own give ModalModel(dimensionless=True)"
         if gap > GREATEST_GAP:
             suspect(f"gap is {gap:g} m; above {GREATEST_GAP:g} m no leaf spring moves that far, and {remedy}")
@@ -129,6 +165,18 @@ class ImpactOscillator:
                 f"mode at {oscillating.min() / (2 * np.pi):g} Hz; the spring then follows its base and does "
                 "not bend"
             )
+
+    @property
+    def stop(self) -> Stop:
+        """The only stop; ValueError for several."""
+        if len(self.stops) == 1:
+            return self.stops[0]
+        raise InvalidValue(f"stops has {len(self.stops)} entries; this holds for one stop, so give stop=")
+
+    @cached_property
+    def _rows(self) -> list[np.ndarray]:
+        """The weights of the modes in the height over each stop."""
+        return [stop.row_in(self.model) for stop in self.stops]
 
     @property
     def n_modes(self) -> int:
@@ -182,6 +230,11 @@ class ImpactOscillator:
         number = require_within("excess", excess, "[1]", above=-1)
         return self.with_amplitude((1.0 + number) * self.grazing_amplitude())
 
+    def heights(self, displacement: np.ndarray) -> np.ndarray:
+        """Heights d_j over all stops [m], shape (..., n_stops), of modal displacements (..., n_modes); below
+        zero where a stop is not reached."""
+        return np.asarray(displacement) @ np.transpose(self._rows) - [stop.gap for stop in self.stops]
+
     def tip(self, values: np.ndarray) -> np.ndarray:
         """Tip displacement relative to the base [m], or tip velocity [m/s], shape (...), of modal
         displacements or velocities `values`, shape (..., n_modes); NaN gives NaN."""
@@ -201,18 +254,26 @@ class ImpactOscillator:
 
     def tip_response(self) -> complex:
         """Tip displacement per base amplitude without contact, complex [1]."""
-        return complex(self._at_one_metre.tip_sine, self._at_one_metre.tip_cosine)
+        return self._response(self._only_at_one_metre)
+
+    @staticmethod
+    def _response(motion: Motion) -> complex:
+        return complex(motion.tip_sine, motion.tip_cosine)
 
     @cached_property
     def mean_height(self) -> float:
         """Static tip displacement minus gap, about which the steady motion oscillates [m]; ValueError if
         there is no steady motion."""
+        self._require_steady()
+        return self._only_at_one_metre.level
+
+    def _require_steady(self) -> None:
+        """Refuse a base at rest, and a load under which a mode drifts."""
         _ = self.driven
         if self.load is not None:
             words = "for a steady motion it must be zero on a mode of zero frequency, which drifts"
             drifts = np.any(self.load[self.model.omega == 0.0])
             require(not drifts, f"load is {shown(self.load.tolist())} N kg^-0.5; {words}")
-        return self._at_one_metre.level
 
     def drive_at(self, reach: float, rate: float) -> tuple[float, float]:
         """Base amplitude [m] and drive time [s] at which the steady tip motion has displacement `reach` [m]
@@ -223,13 +284,17 @@ class ImpactOscillator:
         return abs(phasor), float(np.angle(phasor) % (2.0 * np.pi)) / w
 
     def grazing_amplitude(self) -> float:
-        """Base amplitude Z_g at which the steady tip motion just touches the stop [m]."""
-        level, gap = self.mean_height, self.stop.gap
-        require(level < 0.0, f"gap is {gap} m; the static displacement {level + gap:g} m must stay below it")
-        response = abs(self.tip_response())
+        """Base amplitude Z_g at which the steady motion just touches the stop, or the first of several [m]."""
+        self._require_steady()
+        reached = []
+        for seen in self._at_one_metre:
+            level, gap, response = seen.level, seen.gap, abs(self._response(seen))
+            words = f"the static displacement {level + gap:g} m must stay below it"
+            require(level < 0.0, f"gap is {gap} m; {words}")
+            reached += [-level / response] if response > 0.0 else []
         words = "the drive does not move the tip; at least one mode must have both other than zero"
-        require(response > 0.0, f"phi and participation are such that {words}")
-        return -level / response
+        require(bool(reached), f"phi and participation are such that {words}")
+        return float(min(reached))
 
     @property
     def excess(self) -> float:
@@ -243,25 +308,56 @@ class ImpactOscillator:
         return 0.5 * np.sum(v**2 + (self.model.omega * q) ** 2, axis=-1)
 
     def motion(self) -> Motion:
-        """The numbers of this oscillator, as the kernels take them; not to be written into."""
+        """The numbers of an oscillator with one stop at the tip, as the kernels take them; not to be written
+        into.  ValueError is raised for several stops, or one elsewhere."""
+        if self._elsewhere:
+            raise InvalidValue(self._elsewhere)
+        return self._motion
+
+    def numbers(self) -> Motion:
+        """The numbers with all stops, as simulation takes them; not to be written into."""
         return self._motion
 
     @cached_property
-    def _motion(self) -> Motion:
-        one, drive = self._at_one_metre, self.drive
-        return one if drive is None else with_drive(one, drive.amplitude)
+    def _elsewhere(self) -> str:
+        """Why this is no oscillator with one stop at the tip; empty if it is one."""
+        if len(self.stops) > 1:
+            return f"stops has {len(self.stops)} entries; this holds for one stop, so give stop="
+        if self.stops[0].at == "tip" and self.stops[0].side == 1:
+            return ""
+        at, side = self.stops[0].at, self.stops[0].side
+        words = "this holds for a stop at the tip and on its positive side"
+        return (
+            f"stop is at {at!r}, side {side:+d}; {words}, so give a model whose phi is the row of that stop"
+        )
 
     @cached_property
-    def _at_one_metre(self) -> Motion:
-        """The numbers at an amplitude of 1 m; oscillators that `with_amplitude` has made share them."""
-        return motion_of(
-            self.model.omega,
-            self.model.decay_rate,
-            self.model.phi,
-            law=self.stop.law,
-            gap=self.stop.gap,
-            drive=0.0 if self.drive is None else self.drive.angular_frequency,
-            period=self.period,
-            response=self.steady_response(),
-            load=self.load,
-        )
+    def _motion(self) -> Motion:
+        seen, drive = self._at_one_metre, self.drive
+        views = seen if drive is None else [with_drive(one, drive.amplitude) for one in seen]
+        return views[0] if len(views) == 1 else stacked(views)
+
+    @property
+    def _only_at_one_metre(self) -> Motion:
+        if self._elsewhere:
+            raise InvalidValue(self._elsewhere)
+        return self._at_one_metre[0]
+
+    @cached_property
+    def _at_one_metre(self) -> list[Motion]:
+        """The numbers that each stop sees at an amplitude of 1 m; oscillators that `with_amplitude` has made
+        share them."""
+        return [
+            motion_of(
+                self.model.omega,
+                self.model.decay_rate,
+                row,
+                law=stop.law,
+                gap=stop.gap,
+                drive=0.0 if self.drive is None else self.drive.angular_frequency,
+                period=self.period,
+                response=self.steady_response(),
+                load=self.load,
+            )
+            for stop, row in zip(self.stops, self._rows, strict=True)
+        ]

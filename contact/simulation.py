@@ -29,8 +29,8 @@ from contact.trajectory import State, Trajectory
 MOST_STORED = 2.0**28  # largest number of values in the strobes of one run: 2 GB
 
 
-def _method(method: Integrator | str | None, law: int) -> Integrator:
-    """The chosen method, or the exact one; refused if it does not know the law."""
+def _method(method: Integrator | str | None, oscillator: ImpactOscillator) -> Integrator:
+    """The chosen method, or the exact one; refused if it does not know the law or follows one stop only."""
     chosen: object = Exact() if method is None else method
     if isinstance(chosen, str):
         require(chosen in INTEGRATORS, f"method is {method!r}; it must be one of {', '.join(INTEGRATORS)}")
@@ -41,10 +41,13 @@ def _method(method: Integrator | str | None, law: int) -> Integrator:
             words = f"method is {method!r}, which needs a step; give {kind.__name__}(step=...)"
             raise InvalidType(words) from None
     given: Integrator = require_kind("method", chosen, Integrator, "an Integrator or the name of one")
-    if not given.accepts(law):
-        known = ", ".join(LAW_NAMES[code] for code in given.laws)
-        words = f"which follows {known}; the law of the stop is {LAW_NAMES[law]}"
-        raise InvalidType(f"method is {given.name}, {words}")
+    for law in (stop.law.code for stop in oscillator.stops):
+        if not given.accepts(law):
+            known = ", ".join(LAW_NAMES[code] for code in given.laws)
+            words = f"which follows {known}; the law of the stop is {LAW_NAMES[law]}"
+            raise InvalidType(f"method is {given.name}, {words}")
+    if not isinstance(given, Exact):
+        _ = oscillator.motion()
     return given
 
 
@@ -58,7 +61,7 @@ def require_state(oscillator: ImpactOscillator, state: object) -> State:
 
 def _suspect_rest(oscillator: ImpactOscillator, start: State) -> None:
     """Warn of a driven spring that never moves."""
-    motion, still = oscillator.motion(), not np.any(start.velocity)
+    motion, still = oscillator.numbers(), not np.any(start.velocity)
     still = still and not motion.row(LOAD).any()  # a load moves a mode of zero frequency
     idle = oscillator.drive is not None and oscillator.drive.amplitude == 0.0
     if idle and still and np.all(start.displacement == steady_motion(motion, 0.0)[0]):
@@ -155,7 +158,7 @@ def simulate(
     followed.  A driven spring at rest whose drive has no amplitude brings a SuspiciousValue warning.
     """
     require_kind("oscillator", oscillator, ImpactOscillator, "an ImpactOscillator")
-    chosen = _method(method, oscillator.stop.law.code)
+    chosen = _method(method, oscillator)
     start = State.rest(oscillator.n_modes) if state is None else require_state(oscillator, state)
     run = _run(oscillator, start, duration, periods, times)
     _suspect_rest(oscillator, start)

@@ -77,6 +77,8 @@ class State:
         A number from 0 to 4 is taken too.
     wait, rebound : float
         While waiting, the time still to wait [s] and the tip velocity with which it then leaves [m/s].
+    stop : int
+        Number of the stop that acts, unless the regime is OUTSIDE.
     """
 
     displacement: np.ndarray
@@ -85,6 +87,7 @@ class State:
     regime: Regime | int = Regime.OUTSIDE
     wait: float = 0.0
     rebound: float = 0.0
+    stop: int = 0
 
     def __post_init__(self) -> None:
         shape, words = None, "a number for each mode"
@@ -102,6 +105,8 @@ class State:
             value = getattr(self, name)
             if type(value) is not float or not math.isfinite(value):  # the usual case without a call
                 require_within(f"{name} of the state", value, unit)
+        if self.stop != 0:
+            require_whole("stop of the state", self.stop, "[1], the number of a stop", low=0)
 
     @staticmethod
     def rest(n_modes: int) -> State:
@@ -141,7 +146,7 @@ class Impacts:
         First touch and release, counted from the strobe that begins this period [s]; equal for an impact
         law, the second NaN for a contact that had not ended.
     approach, rebound : ndarray, shape (n_impacts,)
-        Tip velocity at both, positive towards the wall [m/s]; an approach before the run is NaN.
+        Velocity at both, positive towards the stop [m/s]; an approach before the run is NaN.
     loss : ndarray, shape (n_impacts,)
         Energy that the tip has given to the stop [J].  A contact that has ended has lost it; in one still
         closed it includes what the stop stores.  That of a stay is the energy of the hops before it.
@@ -154,6 +159,8 @@ class Impacts:
         holds the tip.  A method with a time step gives the largest force at its grid points.
     kind : ndarray of int, shape (n_impacts,)
         Values of `ImpactKind`.
+    stop : ndarray of int, shape (n_impacts,)
+        Numbers of the stops, from 0 on.
     deviations_start, deviations_end : ndarray, shape (n_impacts, 2, n_modes)
         Deviations (u, v) just before the touch and just after the release.
     """
@@ -168,6 +175,7 @@ class Impacts:
     impulse: np.ndarray
     peak_force: np.ndarray
     kind: np.ndarray
+    stop: np.ndarray
     deviations_start: np.ndarray
     deviations_end: np.ndarray
 
@@ -178,18 +186,20 @@ class Impacts:
     def of_states(
         oscillator: ImpactOscillator, *, times: np.ndarray, states: np.ndarray, **numbers: np.ndarray
     ) -> Impacts:
-        """Touches that another program has found; `numbers` are approach to kind of the list above.
+        """Touches that another program has found; `numbers` are approach to stop of the list above.
 
-        Without impulse or peak force these are NaN.
+        Without impulse or peak force these are NaN, and without numbers of the stops these are 0.
 
         `times` [s] has the shape (2, n_impacts), and the modal states (q, q') have (2, n_impacts, 2,
         n_modes): first the touches, then the releases.
         """
-        unknown = dict.fromkeys(("impulse", "peak_force"), np.full(times.shape[1], np.nan))
+        count = times.shape[1]
+        unknown = dict.fromkeys(("impulse", "peak_force"), np.full(count, np.nan))
+        unknown["stop"] = np.zeros(count, dtype=np.int64)
         given, valid = ", ".join(sorted(numbers.keys() - unknown.keys())), "approach, kind, loss, rebound"
         require(given == valid, f"numbers has {given or 'no entries'}; it must have {valid}")
         period, clock = split_time(times[0], oscillator.period)
-        end_clock, motion = times[1] - period * oscillator.period, oscillator.motion()
+        end_clock, motion = times[1] - period * oscillator.period, oscillator.numbers()
         before, after = states - steady_states(motion, np.array([clock, end_clock]) % motion.period)
         return Impacts(
             oscillator=oscillator,
@@ -219,7 +229,7 @@ class Impacts:
     @cached_property
     def _steady(self) -> tuple[tuple[np.ndarray, np.ndarray], ...]:
         """Steady displacements and velocities at `start`, and at `end`."""
-        motion = self.oscillator.motion()
+        motion = self.oscillator.numbers()
         return tuple(steady_motion(motion, np.fmod(at, motion.period)) for at in (self.clock, self.end_clock))
 
     @cached_property

@@ -5,6 +5,10 @@ In each period a certified search (``contact.flight.crossing``) or, as an option
 (``contact.flight.sampled_crossing``) finds the first touch.  An impact law acts at once.  A force law is
 followed through the contact until the tip leaves the wall (``contact.touch``).  A period without a touch
 costs one multiplication by the flow of a period and a proof, most often from the lowest mode alone.
+
+With several stops each flight is searched for a touch of one after the other, always up to the earliest touch
+found so far.  While one stop is touched, each step of the contact gives the heights over the others as power
+series, and a touch of a second stop ends the run.
 """
 
 from collections.abc import Callable
@@ -16,24 +20,43 @@ import numpy as np
 from contact import touch
 from contact.engine.recorder import put_sample, sample_due, sample_flight, strobe
 from contact.flight.crossing import CROSSES, FREE, UNRESOLVED, searched_flight
+from contact.flight.elementary import EPS
 from contact.flight.modal_flow import (
     LOOK,
+    START_U,
+    START_V,
     apply_flow,
     clear_faint,
     flow_over,
     load_state,
     new_flight,
     propagate_flight,
+    tip_rounding,
 )
+from contact.flight.motion import NUMBERS, STACKED, TIME_SCALE, WEIGHT, seen_from, stops_of
+from contact.flight.polynomial_root import first_polynomial_root
 from contact.flight.sampled_crossing import first_sampled_crossing
+from contact.flight.tip_search import tip_now
 from contact.machine.compiled import borrowed, held, kernel, part
-from contact.touch.passage import AT_END, RELEASED, TOO_MANY, add_exchange, follower, is_full, meet, put_state
-from contact.touch.series import Series, new_series
+from contact.touch.passage import (
+    AT_END,
+    RELEASED,
+    SECOND,
+    TOO_MANY,
+    add_exchange,
+    follower,
+    is_full,
+    meet,
+    put_state,
+)
+from contact.touch.series import Series, fitted, new_series
 from contact.trajectory import OUTSIDE, STAY
 
-DONE, FAILED_CROSSING, FAILED_CHATTER, FAILED_STEPS, FAILED_SERIES, LOG_FULL = range(6)
+DONE, FAILED_CROSSING, FAILED_CHATTER, FAILED_STEPS, FAILED_SERIES, FAILED_SECOND, LOG_FULL = range(7)
 GOING, CROSSED, GRAZED = range(-3, 0)
 """Further statuses within the loop: not at an end; at a touch; at a graze."""
+
+TOGETHER = UNRESOLVED + 1  # further outcome of a flight: two stops are touched at once
 
 MOST_IMPACTS = 100_000
 """Bound of impacts in one drive period.  Accumulating impacts with e = 0.999 take about 2e4 before the hops
@@ -52,33 +75,64 @@ class Workspace(NamedTuple):
     series: Series  # workspace of a contact step
     u: np.ndarray  # deviations at a sample, shape (n_modes,) each
     v: np.ndarray
+    stops: np.ndarray  # the table of the motion, with all stops
+    height: np.ndarray  # series of the height over another stop in a contact step, shape (order + 1,)
 
 
 @part
 def new_workspace(motion):
     """Workspace for a run of an oscillator."""
-    order, columns = touch.series_size(motion)
+    order, columns, several = 0, 0, stops_of(motion) > 1
+    for j in range(stops_of(motion)):
+        own = touch.series_size(seen_from(motion, j) if several else motion)
+        order, columns = max(order, own[0]), max(columns, own[1])
     return Workspace(
         new_flight(motion),
         flow_over(motion, motion.period),
         new_series(order, columns),
         np.empty(motion.size),
         np.empty(motion.size),
+        motion.modes,
+        np.empty(order + 1),
     )
+
+
+@kernel
+def earliest_touch(motion, flight, base, duration, run):
+    """The first touch of any of several stops: outcome and time as of ``searched_flight``, and its stop.
+
+    The outcome is `TOGETHER` if a second stop is reached at the same instant, within rounding.
+    """
+    outcome, s, stop = FREE, duration, run.stop
+    for j in range(stops_of(motion)):
+        order = run.contact_order if j == run.stop else 0
+        found, at = searched_flight(seen_from(motion, j), flight, base, s, order)
+        if found != FREE:
+            outcome, s, stop = found, at, j
+    if outcome == CROSSES:
+        for j in range(stops_of(motion)):
+            seen = seen_from(motion, j)
+            height, rate, _acceleration = tip_now(seen, flight, base, s)
+            margin = tip_rounding(seen, flight[START_U], flight[START_V])
+            if j != stop and height >= -margin and rate >= 0.0:
+                outcome = TOGETHER
+    return outcome, s, stop
 
 
 @part
 def follow_flights(motion, u, v, run, last, clock_end, space, recorder, samples):
     """Follow flights from strobe to strobe, to the next touch or the end of the run; returns the status."""
     flight, whole, marks = space.flight, space.whole, recorder.marks[0]
-    strobes, counts, status = recorder.strobes, recorder.counts, GOING
+    strobes, counts, status, several = recorder.strobes, recorder.counts, GOING, stops_of(motion) > 1
     while status == GOING:
         base, at_last = run.clock, run.period == last
         end = clock_end if at_last else motion.period
         if base < end:
             load_state(flight, u, v)
             count, order = 0, run.contact_order
-            if samples is None:
+            if several:
+                outcome, s, run.stop = earliest_touch(motion, flight, base, end - base, run)
+            elif samples is None:
                 outcome, s = searched_flight(motion, flight, base, end - base, order)
             else:
                 outcome, s, count = first_sampled_crossing(motion, flight, base, end - base, order, samples)
@@ -96,6 +150,8 @@ def follow_flights(motion, u, v, run, last, clock_end, space, recorder, samples)
             run.clock = until
             if outcome == UNRESOLVED:
                 status = FAILED_CROSSING
+            elif outcome == TOGETHER:
+                status = FAILED_SECOND
             elif outcome != FREE:
                 status = CROSSED if outcome == CROSSES else GRAZED
             run.contact_order = 0
@@ -107,12 +163,12 @@ def follow_flights(motion, u, v, run, last, clock_end, space, recorder, samples)
 
 
 @kernel
-def sample_touch(motion, run, s, until, space, recorder):
+def sample_touch(motion, run, s, until, series, space, recorder):
     """Write states at the sample times of a contact step up to `s`, at the clock `until` [s]."""
     while sample_due(recorder, run.period, until):
         time = recorder.sample_clock[recorder.marks[0].sampled] - run.clock
-        at = touch.series_variable(motion, time, s, space.series)
-        touch.state(motion, run, at, space.series, space.u, space.v)
+        at = touch.series_variable(motion, time, s, series)
+        touch.state(motion, run, at, series, space.u, space.v)
         put_sample(recorder, space.u, space.v)
 
 
@@ -125,14 +181,48 @@ def rest_of_hops(run, until, recorder):
     return until - run.clock if row.period > run.period else min(row.start, until) - run.clock
 
 
-def recorded(law: SimpleNamespace) -> Callable[..., None]:
+def reached(height_over: Callable[..., int]) -> Callable[..., bool]:
+    """Whether a step of a contact reaches another stop; of the law, its function of the same name.
+
+    A height within rounding of the stop counts as a touch.
+    """
+
+    def reaches(motion, run, u, v, s, series, space):
+        """`s` is the end of the step from (u, v)."""
+        stops, out = space.stops, space.height
+        for j in range(stops.shape[0] // STACKED):
+            top = STACKED * j
+            weight, own = stops[top + WEIGHT], stops[top + NUMBERS]
+            if j == run.stop:
+                continue
+            order = height_over(motion, run, weight, own, series, out)
+            size, away, power = abs(own[0]) + own[3] + own[4], 0.0, 1.0
+            for k in range(u.size):
+                size += abs(weight[k]) * (abs(u[k]) + abs(v[k]) * motion.modes[TIME_SCALE, k])
+            for n in range(1, order + 1):
+                power *= s
+                away += abs(out[n]) * power
+            margin = 8.0 * EPS * size
+            out[0] += 2.0 * margin
+            if order > 0 and out[0] + away > -margin:
+                out[order + 1 :] = 0.0
+                if first_polynomial_root(out, 1.0, s, margin) >= 0.0:
+                    return True
+        return False
+
+    return kernel(reaches)
+
+
+def recorded(law: SimpleNamespace) -> Callable[..., bool]:
     """The `Watch` of the event loop: samples are taken, what the tip gives to the stop is written."""
-    exchange, state = law.exchange, law.state
+    exchange, state, reaches = law.exchange, law.state, reached(law.height_over)
 
     def watch(motion, run, u, v, s, until, series, watcher):
         space, recorder = watcher
+        if space.stops.shape[0] > STACKED and reaches(motion, run, u, v, s, series, space):
+            return True
         if sample_due(recorder, run.period, until):
-            sample_touch(motion, run, s, until, space, recorder)
+            sample_touch(motion, run, s, until, series, space, recorder)
         if recorder.log.size > 0:
             last, hops = recorder.marks[0].logged - 1, rest_of_hops(run, until, recorder)
             if hops > 0.0:
@@ -141,6 +231,7 @@ def recorded(law: SimpleNamespace) -> Callable[..., None]:
             known = recorder.log[last].peak_force
             work, impulse, force = exchange(motion, run, (hops, s), series, known)
             add_exchange(recorder, work, impulse, force)
+        return False
 
     return part(watch)
 
@@ -151,13 +242,18 @@ follow = follower(recorded)
 @part
 def follow_contact(motion, u, v, run, last, clock_end, space, recorder):
     """Follow a contact to its release or the end of the run; returns the status."""
-    status = GOING
+    status, series = GOING, space.series
+    if space.stops.shape[0] > STACKED:
+        order, columns = touch.series_size(motion)
+        series = fitted(series, order, columns)
     while status == GOING:
         at_last = run.period == last
         end = clock_end if at_last else motion.period
-        left = follow(motion, u, v, run, end, MOST_STEPS, recorder, space.series, (space, recorder))
+        left = follow(motion, u, v, run, end, MOST_STEPS, recorder, series, (space, recorder))
         if left == RELEASED:
             return GOING
+        if left == SECOND:
+            return FAILED_SECOND
         if left != AT_END:
             return FAILED_STEPS if left == TOO_MANY else FAILED_SERIES
         while sample_due(recorder, run.period, end):  # samples closer to the end than any step
@@ -180,7 +276,8 @@ def advance(motion, u, v, runs, last, clock_end, recorder, samples):
     run, workspace = runs[0], new_workspace(motion)
     motion, u, v, recorder = borrowed(motion), borrowed(u), borrowed(v), borrowed(recorder)
     space = borrowed(workspace)
-    status = GOING
+    status, several = GOING, stops_of(motion) > 1
+    seen = seen_from(motion, run.stop) if several else motion
     while status < DONE:
         if is_full(recorder):
             status = LOG_FULL
@@ -190,9 +287,10 @@ def advance(motion, u, v, runs, last, clock_end, recorder, samples):
             status = FAILED_STEPS
         elif run.regime == OUTSIDE:
             status = follow_flights(motion, u, v, run, last, clock_end, space, recorder, samples)
+            seen = seen_from(motion, run.stop) if several else seen
         else:
-            status = follow_contact(motion, u, v, run, last, clock_end, space, recorder)
+            status = follow_contact(seen, u, v, run, last, clock_end, space, recorder)
         if status == CROSSED or status == GRAZED:
-            meet(motion, run, u, v, status == CROSSED, recorder)
+            meet(seen, run, u, v, status == CROSSED, recorder)
     held(workspace)
     return status

@@ -4,12 +4,14 @@ Touches are kept as in ``contact.touch.passage``, and times alike.  A method wit
 strobe throughout, and has its strobes among the samples (``contact.integrators.fixed_step``).
 """
 
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
 from contact.errors import ContactError
 from contact.flight.modal_flow import propagate_flight, steady_motion
+from contact.flight.motion import views_of
 from contact.machine.compiled import inlined, kernel, part
 from contact.oscillator import ImpactOscillator
 from contact.touch import TOUCHES
@@ -122,15 +124,19 @@ def trajectory_of(
     Samples at the end of the run that were not written get the state `end`.  `deviations` tells whether the
     record holds deviations from the steady motion, or else modal states.
     """
-    n, marks, period, motion = oscillator.n_modes, recorder.marks[0], oscillator.period, oscillator.motion()
+    n, marks, period, motion = oscillator.n_modes, recorder.marks[0], oscillator.period, oscillator.numbers()
     left = slice(int(marks["sampled"]), None)
     if np.any((recorder.sample_period[left] < run.last) | (recorder.sample_clock[left] < run.clock_end)):
-        height, velocity = np.array([end.displacement, end.velocity]) @ motion.phi
-        place = {"time": end.time, "gap": motion.gap - float(height), "velocity": float(velocity)}
+        place = {"time": end.time, "gap": -float(oscillator.heights(end.displacement)[0])}
+        place["velocity"] = float(oscillator.tip(end.velocity))
         raise ContactError(**place, detail="the state at one of the times was not written down")
     logged, passed = int(marks["logged"]), run.last - run.first
     log, touches = recorder.log[:logged].copy(), recorder.log_state[:logged].reshape(logged, 2, 2, n).copy()
-    TOUCHES[motion.law].improve(motion, log, touches)
+    edges = np.flatnonzero(np.diff(log["stop"], prepend=-1, append=-1))
+    views = views_of(motion)
+    for first, last in pairwise(edges.tolist()):  # touches of one stop in a row
+        seen = views[log["stop"][first]]
+        TOUCHES[seen.law].improve(seen, log[first:last], touches[first:last])
     rows = np.concatenate((recorder.strobes, recorder.samples))
     q, v = rows[:, :n].copy(), rows[:, n:].copy()
     if deviations:
@@ -157,6 +163,7 @@ def trajectory_of(
         impulse=log["impulse"].copy(),
         peak_force=log["peak_force"].copy(),
         kind=log["kind"].copy(),
+        stop=log["stop"].copy(),
         deviations_start=touches[:, 0],
         deviations_end=touches[:, 1],
     )

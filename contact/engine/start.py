@@ -1,14 +1,16 @@
 """A run of the exact motion: its start, the call of the event loop, and its errors."""
 
+from dataclasses import replace
+
 import numpy as np
 
-from beam.parameters import InvalidValue
+from beam.parameters import InvalidValue, require
 from contact.engine import event_loop as loop
 from contact.engine.recorder import grown, recorder_for, trajectory_of
-from contact.errors import Chatter, ContactError, ContactTooStiff, UnresolvedCrossing
+from contact.errors import Chatter, ContactError, ContactTooStiff, TouchedAtOnce, UnresolvedCrossing
 from contact.flight.elementary import EPS
 from contact.flight.modal_flow import steady_motion, tip_rounding, tip_state
-from contact.flight.motion import LOAD, Motion
+from contact.flight.motion import LOAD, Motion, views_of
 from contact.flight.sampled_crossing import Samples
 from contact.oscillator import ImpactOscillator
 from contact.touch import TOUCHES, force, strike
@@ -22,6 +24,7 @@ FAILURES: dict[int, tuple[type[ContactError], str]] = {
     loop.FAILED_CROSSING: (UnresolvedCrossing, ""),
     loop.FAILED_CHATTER: (Chatter, f"more than {loop.MOST_IMPACTS} in one drive period"),
     loop.FAILED_STEPS: (ContactTooStiff, f"more than {loop.MOST_STEPS} steps in one drive period"),
+    loop.FAILED_SECOND: (TouchedAtOnce, ""),
     loop.FAILED_SERIES: (ContactTooStiff, "its power series gives no step of finite length above zero"),
 }
 """The error for each failure status of `advance`, and its detail."""
@@ -94,7 +97,7 @@ def start_of(
             )
         pushes = INSIDE not in known or force(motion, height, velocity) > 0.0
         regime = Regime.CONTACT if pushes else INSIDE
-    runs[0] = (regime, 0, period, 0, 0, clock, state.wait, state.rebound, -1.0, -1.0)
+    runs[0] = (regime, 0, state.stop, period, 0, 0, clock, state.wait, state.rebound, -1.0, -1.0)
     if regime == OUTSIDE and height >= -rounding:
         order, leaves = first_motion(motion, clock, u, v)
         if leaves:
@@ -104,6 +107,23 @@ def start_of(
             runs[0]["regime"] = regime
             runs[0]["memory0"] = -1.0
     return u, v, runs
+
+
+def start_of_several(
+    motion: Motion, state: State, period: int, clock: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """`start_of` for a `motion` with several stops; TouchedAtOnce is raised if two of them act."""
+    views, found = views_of(motion), list[tuple[np.ndarray, np.ndarray, np.ndarray]]()
+    words = f"it must be the number of one of {len(views)} stops, from 0 on"
+    require(state.stop < len(views), f"stop of the state is {state.stop} [1]; {words}")
+    for j, seen in enumerate(views):
+        regime = state.regime if j == state.stop else OUTSIDE
+        found.append(start_of(seen, replace(state, regime=regime, stop=j), period, clock))
+    touched = [start for start in found if start[2]["regime"][0] != OUTSIDE]
+    if len(touched) > 1:
+        raise failure(loop.FAILED_SECOND, motion, touched[0][2], *touched[0][:2])
+    on_wall = [start for start in found if start[2]["contact_order"][0] > 0]
+    return (touched or on_wall or found)[0]
 
 
 def state_of(motion: Motion, runs: np.ndarray, displacement: np.ndarray, velocity: np.ndarray) -> State:
@@ -116,13 +136,14 @@ def state_of(motion: Motion, runs: np.ndarray, displacement: np.ndarray, velocit
         regime=int(run["regime"]),
         wait=float(run["wait"]),
         rebound=float(run["rebound"]),
+        stop=int(run["stop"]) if run["regime"] != OUTSIDE else 0,
     )
 
 
 def failure(status: int, motion: Motion, runs: np.ndarray, u: np.ndarray, v: np.ndarray) -> ContactError:
     """The error for a failure status of `advance`."""
-    clock = float(runs[0]["clock"])
-    height, velocity, _acceleration = tip_state(motion, clock, u, v)
+    clock, stop = float(runs[0]["clock"]), int(runs[0]["stop"])
+    height, velocity, _acceleration = tip_state(views_of(motion)[stop], clock, u, v)
     error, detail = FAILURES[status]
     time = int(runs[0]["period"]) * motion.period + clock
     return error(time=time, gap=-height, velocity=velocity, detail=detail)
@@ -135,13 +156,14 @@ def exact_trajectory(oscillator: ImpactOscillator, run: Run, samples: Samples | 
     Raises ValueError as `start_of` does, and UnresolvedCrossing, Chatter or ContactTooStiff if the motion
     cannot be followed.
     """
-    motion, n = oscillator.motion(), oscillator.n_modes
-    u, v, runs = start_of(motion, run.start, run.first, run.clock)
+    motion, n = oscillator.numbers(), oscillator.n_modes
+    starts = start_of_several if len(oscillator.stops) > 1 else start_of
+    u, v, runs = starts(motion, run.start, run.first, run.clock)
     recorder = recorder_for(run, n)
     if runs[0]["regime"] != OUTSIDE:
         stays = runs[0]["regime"] == SUSTAINED
         kind, approach = (ImpactKind.STAY, 0.0) if stays else (ImpactKind.UNDER_WAY, np.nan)
-        open_touch(recorder, run.first, run.clock, approach, int(kind), u, v)
+        open_touch(recorder, runs[0]["stop"], run.first, run.clock, approach, int(kind), u, v)
         recorder.marks["impacts"] = 0  # it did not begin in this period
     while True:
         status = loop.advance(motion, u, v, runs, run.last, run.clock_end, recorder, samples)

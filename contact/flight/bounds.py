@@ -27,15 +27,16 @@ flight, since the difference is an integral of sin(w (t - s)) >= 0 times a funct
     z(t) <= z_1 cos(w (t - t_1)) + (z_1'/w) sin(w (t - t_1)),      |t - t_1| <= pi/w.                  (1)
 
 With m the margin for rounding, the tip stays off the stop wherever z < K = G - d - r - m, and also where
-cos(w (t - t_p)) <= 0 if rho + r + m < G.  Let the flight lie within one drive period P with t_p in its middle
-half, |t_1 - t_p| be at most P/4, and |z_1| < K > 0.  Times more than P/2 from t_1, where (1) does not hold,
-then have cos(w (t - t_p)) <= 0, and the bound in (1) stays below |z_1| on one side:
+cos(w (t - t_p)) <= 0 if rho + r + m < G.  Take a stretch of the flight within 3 P/4 of t_p, P the drive
+period, let |t_1 - t_p| be at most P/4, and |z_1| < K > 0.  Times more than P/2 from t_1, where (1) does not
+hold, then have cos(w (t - t_p)) <= 0, and the bound in (1) stays below |z_1| on one side:
 
     z_1' <= 0: no touch after t_1;      z_1' >= 0: none before;      z_1^2 + (z_1'/w)^2 < K^2: none at all.
 
 The first also holds for any later t_1, the second for any earlier one.  The motion at t_p, or at the peak
 next to it, so settles a flight without a touch; a flight with one is settled up to just before y - R first
-comes within r of the stop.
+comes within r of the stop.  A flight through a whole period whose t_p lies outside the middle half is taken
+as two stretches of P/2.
 """
 
 import math
@@ -95,27 +96,37 @@ class LowestMode(NamedTuple):
 
 
 @part
-def lowest_mode(motion, flight, base, duration, rest, margin):
-    """The bounds of a flight that starts a time `base` after a strobe and has the length `duration` [s].
+def peak_of_drive(motion):
+    """The time of the steady peak of the tip, from 0 to the drive period [s]; 0 without a drive."""
+    if not motion.drive > 0.0:
+        return 0.0
+    angle = math.atan2(motion.tip_sine, motion.tip_cosine)
+    return (angle if angle >= 0.0 else angle + 2.0 * math.pi) / motion.drive
 
-    `flight` holds its start, `rest` is r, infinite if a mode of zero frequency takes part [m], and `margin`
+
+@part
+def lowest_mode(motion, flight, base, span, peak, rest, margin):
+    """The bounds for a `span` of times of a flight that starts a time `base` after a strobe [s].
+
+    `flight` holds its start, `peak` is `peak_of_drive`, `rest` is r, infinite if a mode of zero frequency takes part [m], and `margin`
     the rounding bound of the tip displacement [m].
     """
     w, gap, omega, period = motion.drive, -motion.level, motion.modes[OMEGA, 0], motion.period
     u, v = flight[START_U, 0], flight[START_V, 0]
     near = rest * (1.0 + 1e-12) + 8.0 * margin
     nothing = LowestMode(0.0, 0.0, 0.0, 0.0, near)
-    if not (w > 0.0 and omega > 0.0 and gap > near and base + duration <= period * (1.0 + 1e-12)):
+    if not (w > 0.0 and omega > 0.0 and gap > near):
         return nothing
     rho = abs(motion.modes[WEIGHT, 0]) * math.sqrt(u * u + v * v / (omega * omega))
     deviant = (abs(w - omega) * (w + omega) + motion.modes[DECAY, 0] * omega) * rho / (w * w)
     slack = gap - deviant - near
     if not (slack > LEAST_SLACK * gap and rho + near + UNCERTAIN * motion.amplitude < gap):
         return nothing
-    angle = math.atan2(motion.tip_sine, motion.tip_cosine)
-    peak = (angle if angle >= 0.0 else angle + 2.0 * math.pi) / w
-    quarter = 0.25 * period
-    if not (abs(peak - 2.0 * quarter) <= quarter * (1.0 + 1e-12) and motion.amplitude <= HIGHEST * gap):
+    quarter, start, end = 0.25 * period, base + span[0], base + span[1]
+    reach = 3.0 * quarter * (1.0 + 1e-12)
+    if max(peak - start, end - peak) > reach:  # the peak before or after may be closer
+        peak += period if start > peak else -period
+    if not (max(peak - start, end - peak) <= reach and motion.amplitude <= HIGHEST * gap):
         return nothing
     return LowestMode(peak, quarter, gap - deviant, slack, near)
 
@@ -146,21 +157,23 @@ def without_others(motion, flight, base, s):
 
 
 @part
-def free_until(motion, flight, lowest, base, duration):
-    """Time since the start of the flight up to which no touch can come [s]; `duration` if none can."""
+def free_until(motion, flight, lowest, base, span):
+    """Time since the start of the flight up to which no touch can come in a `span` of it [s]; the end of the
+    span if none can."""
+    free, duration = span
     if not lowest.slack > 0.0:
-        return 0.0
-    w, least, end = motion.drive, lowest.slack, base + duration
+        return free
+    w, least, start, end = motion.drive, lowest.slack, base + free, base + duration
     goal = 1.25 * lowest.near + 0.5 * CLOSE * abs(motion.level)
-    t, free = min(max(lowest.peak, base), end), 0.0
+    t = min(max(lowest.peak, start), end)
     for _ in range(TRIES):
         if t - lowest.peak > lowest.quarter:
-            return duration if t == base else free
+            return duration if t == start else free
         height, rate, curvature, third = without_others(motion, flight, base, t - base)
         z = height + lowest.mean
         if z * z + (rate / w) ** 2 < least * least and t >= lowest.peak - lowest.quarter:
             return duration
-        if t == base and free_from(lowest, t, height, rate):
+        if t == start and free_from(lowest, t, height, rate):
             return duration
         if rate >= 0.0 and abs(z) < least:
             free = t - base
@@ -178,7 +191,7 @@ def free_until(motion, flight, lowest, base, duration):
         else:
             x = -rate / curvature
             x -= 0.5 * third * x * x / (curvature + third * x)
-        if not abs(x) < lowest.quarter or t + x <= base:
+        if not abs(x) < lowest.quarter or t + x <= start:
             return free
         t = min(t + x, end)
     return free

@@ -18,7 +18,7 @@ stretch that no proof settles, with h down to rounding, is reported as unresolve
 import math
 
 from contact.flight import modal_flow as rows
-from contact.flight.bounds import PEAK, ROOT, SKIP, certify, free_from, free_until, lowest_mode
+from contact.flight.bounds import PEAK, ROOT, SKIP, certify, free_from, free_until, lowest_mode, peak_of_drive
 from contact.flight.elementary import EPS
 from contact.flight.modal_flow import flow, load_state, new_flight, tip_rounding, tip_steady
 from contact.flight.motion import DECAY, INVERSE_OMEGA, LOAD, SQUARE, WEIGHT
@@ -188,17 +188,33 @@ def outcome_at_peak(motion, flight, base, point, step, duration, m3, margin):
 @kernel
 def searched_flight(motion, flight, base, duration, contact_order):
     """`first_crossing` of the flight that starts at rows START_U and START_V of its workspace."""
-    n, above = motion.size, flight[rows.ABOVE]
     must, whole = amplitudes(motion, flight)
     margin = tip_rounding(motion, flight[rows.START_U], flight[rows.START_V])
     if contact_order == 0 and motion.level + motion.amplitude + whole < -margin:
         return FREE, duration
-    lowest = lowest_mode(motion, flight, base, duration, above[0], margin)
+    peak, first, end, half = peak_of_drive(motion), 0.0, duration, 0.5 * motion.period
+    if base < half < base + duration and abs(peak - half) > 0.5 * half * (1.0 + 1e-12):
+        end = half - base
+    while True:
+        span, off = (first, end), contact_order == 0 or first > 0.0
+        outcome, s = searched_span(
+            motion, flight, base, span, 0 if off else contact_order, peak, must, margin
+        )
+        if outcome != FREE or end >= duration:
+            return outcome, s
+        first, end = end, duration
+
+
+@part
+def searched_span(motion, flight, base, span, contact_order, peak, must, margin):
+    """The first crossing in a `span` of times of a flight [s], to its start off the wall if it is later."""
+    n, above, (first, duration) = motion.size, flight[rows.ABOVE], span
+    lowest = lowest_mode(motion, flight, base, span, peak, above[0], margin)
     h, h_min = 0.05 * motion.period, 64.0 * EPS * (base + duration)
     if motion.fastest > 0.0:
         h_min += 1e-15 / motion.fastest
     if contact_order == 0:
-        s = free_until(motion, flight, lowest, base, duration)
+        s = free_until(motion, flight, lowest, base, span)
         if s >= duration:
             return FREE, duration
     else:

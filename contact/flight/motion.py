@@ -4,15 +4,20 @@ One container holds all that flights, touches and orbits need: scalars, and one 
 columns.  The table is filled up to a multiple of eight with modes that stay zero, so that a processor handles
 several in one instruction.  (Passing a dozen arrays to a kernel would take several times as long as
 propagating eight modes.)  The equations are those of ``contact.flight.modal_flow``.
+
+An oscillator with several stops has one `Motion` too, in which their tables are stacked.  Each stop sees the
+same modes with weights and numbers of its own, and `seen_from` gives the `Motion` as one of them sees it.
+Kernels of flights, touches and laws take such a view; only the loops that choose between stops take the stack.
 """
 
 import math
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from contact.flight.elementary import square_root, two_product
-from contact.machine.compiled import kernel
+from contact.machine.compiled import inlined, kernel
 from contact.machine.vector_loops import LANES
 
 DECAY, SQUARE, WEIGHT, LOAD = range(4)
@@ -21,9 +26,16 @@ DAMPED, DAMPED_LOW, OMEGA, INVERSE_OMEGA, TIME_SCALE, SINE, COSINE, OFFSET = ran
 doubles, omega, 1/omega (or zero), 1/max(omega, c/2) (or the period), S, C, g/omega^2.  The loops of
 ``contact.machine.vector_loops`` use the first four."""
 
+NUMBERS = 12
+"""In a stack, the row after those of a stop that holds `_OWN`; one more holds law, numbers, and where in the
+row `Motion.table` its own table begins, with the numbers of its rows and columns."""
+STACKED = 14  # rows of the table for each of several stops
+
+_OWN = "level", "tip_sine", "tip_cosine", "amplitude", "gap", "inverse_mass"
+
 
 class Motion(NamedTuple):
-    """The numbers of an oscillator."""
+    """The numbers of an oscillator, as one stop sees them."""
 
     modes: np.ndarray  # the table, shape (12, m): m is the number of modes, filled up to a multiple of eight
     tip_sine: float  # sum of phi S [m]
@@ -141,9 +153,64 @@ def motion_of(
     )
 
 
+def stacked(views: Sequence[Motion]) -> Motion:
+    """The numbers of an oscillator with several stops, from those that each of them sees."""
+    blocks, tables, first = [], [], 0
+    for view in views:
+        own = np.zeros((STACKED - NUMBERS, view.modes.shape[1]))
+        own[0, : len(_OWN)] = [getattr(view, name) for name in _OWN]
+        own[1, :6] = view.law, view.number0, view.number1, first, *view.table.shape
+        first += view.table.size
+        blocks.append(np.concatenate((view.modes, own)))
+        tables.append(view.table.ravel())
+    return views[0]._replace(modes=np.concatenate(blocks), table=np.concatenate(tables)[None])
+
+
+@inlined
+def stops_of(motion):
+    """The number of stops."""
+    return max(motion.modes.shape[0] // STACKED, 1)
+
+
+def _seen_from(motion, j):
+    """The motion as the stop of number `j` in a stack of several sees it."""
+    top = STACKED * j
+    own, code = motion.modes[top + NUMBERS], motion.modes[top + NUMBERS + 1]
+    first, rows, columns = int(code[3]), int(code[4]), int(code[5])
+    return Motion(
+        motion.modes[top : top + NUMBERS],
+        own[1],
+        own[2],
+        own[3],
+        motion.steady_energy,
+        motion.size,
+        own[0],
+        motion.drive,
+        motion.period,
+        own[4],
+        own[5],
+        int(code[0]),
+        code[1],
+        code[2],
+        motion.all_underdamped,
+        motion.phase_rate,
+        motion.fastest,
+        motion.table[0][first : first + rows * columns].reshape(rows, columns),
+    )
+
+
+seen_from = inlined(_seen_from)
+
+
+def views_of(motion: Motion) -> list[Motion]:
+    """The motion as each of its stops sees it."""
+    count = len(motion.modes) // STACKED
+    return [_seen_from(motion, j) for j in range(count)] if count else [motion]
+
+
 @kernel
 def with_drive(motion, factor):
-    """The same oscillator at `factor` times its base amplitude."""
+    """The same oscillator with one stop at `factor` times its base amplitude."""
     modes = motion.modes.copy()
     for k in range(motion.size):
         modes[SINE, k] *= factor

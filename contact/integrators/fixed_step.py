@@ -129,7 +129,7 @@ class FixedStep(Integrator):
         recorder, order = _merged(recorder_for(run, n), run, period)
         under_way = forced and here["gap"] < 0.0
         if under_way:
-            open_touch(recorder, run.first, run.clock, math.nan, UNDER_WAY, q, v)
+            open_touch(recorder, 0, run.first, run.clock, math.nan, UNDER_WAY, q, v)
         progress = np.zeros(1, dtype=PROGRESS)
         progress["due"] = -math.inf  # the first step has to look for samples
         base = 0.0 if oscillator.drive is None else oscillator.drive.amplitude * motion.drive**2

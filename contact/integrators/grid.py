@@ -195,7 +195,7 @@ def make_contact_writer(interpolate: Interpolate) -> WriteContact:
             else:
                 _depth, rate = interpolate(grid, method, 0.0, h, False)
         if opens:
-            open_touch(recorder, grid.first, start + x * h, rate, IMPACT, grid.q_at, grid.v_at)
+            open_touch(recorder, 0, grid.first, start + x * h, rate, IMPACT, grid.q_at, grid.v_at)
         if touching or opens:
             add_exchange(recorder, given[0], given[1], given[2])
         if closes:

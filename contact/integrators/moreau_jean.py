@@ -92,7 +92,7 @@ def write_percussion(grid, corner, span, _depth, push):
         _d, before = path_with_corner(grid, corner, corner, h, True)
         _d, after = tip_of(grid.motion, grid.q_at, grid.v)
         if opens:
-            open_touch(recorder, grid.first, start + corner * h, before, IMPACT, grid.q_at, grid.v_at)
+            open_touch(recorder, 0, grid.first, start + corner * h, before, IMPACT, grid.q_at, grid.v_at)
         loss = 0.5 * (before - after) * (before + after) / grid.motion.inverse_mass
         add_exchange(recorder, loss, push, math.nan)
         close_touch(recorder, grid.first, start + corner * h, after, grid.q_at, grid.v)

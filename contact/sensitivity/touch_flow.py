@@ -37,6 +37,7 @@ def carry_tangents(motion, run, u, v, s, until, series, watcher):
     terms = touch.slopes(motion, run, series, space.weights) if tangent.shape[1] > 0 else 0
     if terms > 0:
         tangent_step(vary, space, terms, s, tangent, (run.clock, u, v))
+    return False
 
 
 follow = follower(lambda law: carry_tangents)

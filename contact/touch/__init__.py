@@ -38,6 +38,11 @@ What a file offers.  `motion` is the oscillator, `run` the state of the motion
                                               what the tip gives to the stop in a step up to span[1]: work
                                               [J], impulse [N s], and the larger of `known` and the largest
                                               force from span[0] on [N] (``contact.touch.exchange``)
+    height_over(motion, run, weight, own, series, out) -> order
+                                              the series of the height over another stop in this step, in the
+                                              law's variable, from its `weight` of the modes and its `own`
+                                              numbers as in a stack (``contact.flight.motion``); 0 if no other
+                                              stop can be reached
     leave(motion, run, u, v) -> velocity      sets run.contact_order for the flight after the release; the
                                               tip velocity there [m/s]
     force(motion, d, d') -> N                 for the methods with a time step, at d >= 0

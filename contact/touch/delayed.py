@@ -145,6 +145,12 @@ def state(motion, run, h, series, u, v):
     hold(motion, run.clock + h, u, v)
 
 
+@part
+def height_over(motion, run, weight, own, series, out):
+    """No series: the only mode stands still."""
+    return 0
+
+
 @kernel
 def exchange(motion, run, span, series, known):
     """The impulse that holds the tip against spring and drive, and at the end the impulse of the rebound.

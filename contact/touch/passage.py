@@ -39,10 +39,13 @@ _NAMES = (
     "impulse",
     "peak_force",
     "kind",
+    "stop",
 )
-TOUCH = np.dtype([(name, "i8" if name in ("period", "end_period", "kind") else "f8") for name in _NAMES])
-"""A touch: period and clock of its start and of its end [s], tip velocity at both [m/s], energy given to the
-stop [J], impulse [N s] and largest force [N] (NaN if not known) and ``contact.trajectory.ImpactKind``."""
+_WHOLE = ("period", "end_period", "kind", "stop")
+TOUCH = np.dtype([(name, "i8" if name in _WHOLE else "f8") for name in _NAMES])
+"""A touch: period and clock of its start and of its end [s], velocity towards the stop at both [m/s], energy
+given to the stop [J], impulse [N s] and largest force [N] (NaN if not known),
+``contact.trajectory.ImpactKind`` and number of the stop."""
 
 
 class Touches(NamedTuple):
@@ -79,8 +82,8 @@ def is_full(record):
 
 
 @kernel
-def open_touch(record, period, clock, approach, kind, u, v):
-    """Start a row of the log."""
+def open_touch(record, stop, period, clock, approach, kind, u, v):
+    """Start a row of the log, for a touch of the stop of this number."""
     marks = record.marks[0]
     marks.touching = 1
     marks.impacts += 1 if kind == IMPACT else 0
@@ -90,7 +93,7 @@ def open_touch(record, period, clock, approach, kind, u, v):
         return
     row, n = record.log[i], u.size
     row.period, row.start, row.end_period, row.end = period, clock, period, math.nan
-    row.approach, row.rebound, row.loss, row.kind = approach, math.nan, 0.0, kind
+    row.approach, row.rebound, row.loss, row.kind, row.stop = approach, math.nan, 0.0, kind, stop
     row.impulse = row.peak_force = math.nan
     put_state(record.log_state[i], 0, u, v)
     record.log_state[i, 2 * n :] = math.nan
@@ -119,25 +122,28 @@ def close_touch(record, period, clock, rebound, u, v):
 
 
 STATE = np.dtype(
-    [(name, "i8") for name in ("regime", "contact_order", "period", "evaluations", "steps")]
+    [(name, "i8") for name in ("regime", "contact_order", "stop", "period", "evaluations", "steps")]
     + [(name, "f8") for name in ("clock", "wait", "rebound", "memory0", "memory1")]
 )
 """The state of a motion besides its deviations: ``contact.trajectory.State`` for kernels.
 
-regime, wait, rebound: as there; contact_order: number of derivatives of the tip displacement that vanish at
-the start of the flight; period, clock: number of the drive period and time since its strobe [s]; evaluations:
+regime, wait, rebound: as there; contact_order: number of derivatives of the height over `stop` that vanish at
+the start of the flight; stop: number of the stop that is touched or was the last to be; period, clock: number
+of the drive period and time since its strobe [s]; evaluations:
 flights, contact steps and sampled positions so far; steps: flights and contact steps since the strobe;
 memory0, memory1: what the law keeps of the touch under way for itself, negative when to be computed anew.
 """
 
-RELEASED, AT_END, TOO_MANY, NO_STEP = range(4)
-"""How a contact is left: released; at the end of the time; after too many steps; at a step of no length."""
+RELEASED, AT_END, TOO_MANY, NO_STEP, SECOND = range(5)
+"""How a contact is left: released; at the end of the time; after too many steps; at a step of no length; at
+a touch of a second stop."""
 
 CLOSEST = 4.0 * EPS  # part of a drive period next to the end in which no step is made
 
-Watch = Callable[[SimpleNamespace], Callable[..., None]]
+Watch = Callable[[SimpleNamespace], Callable[..., bool]]
 """From a law of ``touch.TOUCHES`` to watch(motion, run, u, v, s, until, series, watcher), done at each step.
-The step leads from (u, v) at the clock of the run to `s`, in the law's own variable, at the clock `until`."""
+The step leads from (u, v) at the clock of the run to `s`, in the law's own variable, at the clock `until`.
+It returns whether a second stop is touched on the way."""
 
 
 @part
@@ -147,7 +153,7 @@ def begin(motion, run, u, v, touches):
     The touch is written into the record `touches`, and closed unless the contact lasts.
     """
     approach = tip_state(motion, run.clock, u, v)[1]
-    open_touch(touches, run.period, run.clock, approach, IMPACT, u, v)
+    open_touch(touches, run.stop, run.period, run.clock, approach, IMPACT, u, v)
     run.regime, rebound, loss, impulse = touch.strike(motion, run, u, v, approach)
     add_exchange(touches, loss, impulse, math.nan)
     if run.regime == OUTSIDE or run.regime == SUSTAINED:
@@ -163,7 +169,7 @@ def meet(motion, run, u, v, crosses, touches):
     and their energy is its loss.
     """
     if not crosses:
-        open_touch(touches, run.period, run.clock, 0.0, GRAZE, u, v)
+        open_touch(touches, run.stop, run.period, run.clock, 0.0, GRAZE, u, v)
         add_exchange(touches, 0.0, 0.0, 0.0)
         close_touch(touches, run.period, run.clock, 0.0, u, v)
         run.contact_order = 2
@@ -173,13 +179,13 @@ def meet(motion, run, u, v, crosses, touches):
             hold(motion, run.clock, u, v)
             late = int((run.clock + run.memory0) / motion.period)
             begins = run.clock + run.memory0 - late * motion.period
-            open_touch(touches, run.period + late, begins, 0.0, STAY, u, v)
+            open_touch(touches, run.stop, run.period + late, begins, 0.0, STAY, u, v)
             work, impulse = 0.5 * rebound * rebound / motion.inverse_mass, rebound / motion.inverse_mass
             add_exchange(touches, work, impulse, math.nan)
             run.memory0 = -1.0
 
 
-def _follow(law: SimpleNamespace, watch: Callable[..., None]) -> Callable[..., int]:
+def _follow(law: SimpleNamespace, watch: Callable[..., bool]) -> Callable[..., int]:
     """`follower` for one law, so that the law is looked up once a touch and not once a step."""
     step, state, leave = law.step, law.state, law.leave
 
@@ -197,7 +203,8 @@ def _follow(law: SimpleNamespace, watch: Callable[..., None]) -> Callable[..., i
             if not (0.0 <= h < math.inf):
                 return NO_STEP
             until = run.clock + h if h < end - run.clock else end
-            watch(motion, run, u, v, s, until, series, watcher)
+            if watch(motion, run, u, v, s, until, series, watcher):
+                return SECOND
             state(motion, run, s, series, u, v)
             run.regime, run.clock = following, until
             if following == OUTSIDE:

@@ -280,6 +280,19 @@ def step(motion, run, u, v, limit, series):
 
 
 @kernel
+def height_over(motion, run, weight, own, series, out):
+    """The series of the height over another stop, in `out`; see ``contact.touch``."""
+    rows = series.rows
+    at_u = rows.shape[1] - 2 * weight.size
+    for n in range(ORDER + 1):
+        out[n] = own[1] * rows[n, SINE] + own[2] * rows[n, COSINE]
+        for k in range(weight.size):
+            out[n] += weight[k] * rows[n, at_u + k]
+    out[0] += own[0]
+    return ORDER
+
+
+@kernel
 def state(motion, run, s, series, u, v):
     """Deviations of all modes at sigma = `s`, in `u` and `v`."""
     powers = series.scalars[POWERS]

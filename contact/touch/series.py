@@ -44,6 +44,16 @@ def new_series(order, columns):
     return Series(rows, sums, np.zeros((8, order + 1)), np.zeros((3, order + 1)), aligned(4, 16))
 
 
+@kernel
+def fitted(series, order, columns):
+    """A part of a workspace that has just this order and these columns."""
+    terms = order + 1
+    rows = series.rows.reshape(series.rows.size)[: terms * columns].reshape(terms, columns)
+    scalars = series.scalars.reshape(series.scalars.size)[: 8 * terms].reshape(8, terms)
+    scaled = series.scaled.reshape(series.scaled.size)[: 3 * terms].reshape(3, terms)
+    return Series(rows, series.sums[:columns], scalars, scaled, series.places)
+
+
 @part
 def strike(motion, run, u, v, approach):
     """A touch under a force law: the contact begins at d = 0; see ``contact.touch``."""

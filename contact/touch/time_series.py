@@ -10,7 +10,7 @@ digit in a mode that fast and nothing in the others.  A higher order would save 
 
 import math
 
-from contact.flight.elementary import EPS
+from contact.flight.elementary import EPS, sine_cosine
 from contact.flight.modal_flow import speed_scale, tip_steady, tip_sum
 from contact.machine.compiled import kernel, part
 from contact.machine.vector_loops import next_order, weighted_rows
@@ -103,6 +103,21 @@ def longest_step(motion, stored, u, v, series):
 def series_variable(motion, t, end, series):
     """The variable of the series a time `t` [s] into a step: this time itself."""
     return t
+
+
+@kernel
+def height_over(motion, run, weight, own, series, out):
+    """The series of the height over another stop, in `out`; see ``contact.touch``."""
+    w = motion.drive
+    sine, cosine = sine_cosine(w * run.clock, 0.0)
+    out[0], out[1] = own[1] * sine + own[2] * cosine, w * (own[1] * cosine - own[2] * sine)
+    for n in range(ORDER - 1):
+        out[n + 2] = -w * w * out[n] / ((n + 1.0) * (n + 2.0))
+    for n in range(ORDER + 1):
+        for k in range(weight.size):
+            out[n] += weight[k] * series.rows[n, k]
+    out[0] += own[0]
+    return ORDER
 
 
 @kernel

@@ -7,7 +7,15 @@ import pytest
 from oscillators import modes_on_stop, newton, slow
 from tip_judge import Signal, highest, with_gap
 
-from contact.flight.bounds import CLOSE, LowestMode, free_from, free_until, lowest_mode, without_others
+from contact.flight.bounds import (
+    CLOSE,
+    LowestMode,
+    free_from,
+    free_until,
+    lowest_mode,
+    peak_of_drive,
+    without_others,
+)
 from contact.flight.crossing import CROSSES, FREE, first_crossing
 from contact.flight.modal_flow import load_state, new_flight, tip_rounding
 from contact.flight.motion import Motion
@@ -34,7 +42,8 @@ def claims(motion: Motion, base: float, u: np.ndarray, v: np.ndarray) -> tuple[L
     load_state(flight, u, v)
     rest = float(np.sum(np.abs(motion.phi[1:]) * np.hypot(u[1:], v[1:] / motion.omega[1:])))
     margin = tip_rounding(motion, u, v)
-    lowest = lowest_mode(motion, flight, base, motion.period - base, rest, margin)
+    span, peak = (0.0, motion.period - base), peak_of_drive(motion)
+    lowest = lowest_mode(motion, flight, base, span, peak, rest, margin)
     return lowest, (motion, flight)
 
 
@@ -49,7 +58,7 @@ def test_no_touch_lies_in_what_is_proved_free(modes, cases):
         base = motion.period * generator.choice([0.0, generator.uniform(0, 0.9)])
         lowest, flight = claims(motion, base, u, v)
         duration, tip = motion.period - base, Signal(motion, base, u, v)
-        s = free_until(*flight, lowest, base, duration)
+        s = free_until(*flight, lowest, base, (0.0, duration))
         if s > 0.0:
             free, part = free + (s == duration), part + (s < duration)
             assert highest(tip, GAP, 0.0, s) < 0
@@ -77,7 +86,7 @@ def test_a_planted_touch_is_found_and_a_planted_miss_settled(modes, planted):
             lowest, flight = claims(moved, 0.0, u, v)
             if lowest.slack == 0.0 or signal(np.longdouble(0)) > 0.9 * gap:
                 continue
-            s = free_until(*flight, lowest, 0.0, moved.period)
+            s = free_until(*flight, lowest, 0.0, (0.0, moved.period))
             outcome, root = first_crossing(moved, 0.0, u, v, moved.period, 0)
             if sign > 0.0:
                 touched += 1
