@@ -33,6 +33,7 @@ The files: the problem and its answer
     ``speed_table``     functions of the approach speed, such as a restitution, as tables
     ``restitution``     `damping_ratio` of a restitution; `restitution_from_bounces`
     ``stop``            `Stop`: a gap, a law, and where it lies
+    ``plausible``       warnings of sizes that no spring has
     ``oscillator``      `ImpactOscillator`: a ``beam.ModalModel``, stops and a drive; the equation of motion
     ``trajectory``      `State`, `Impacts`, `Trajectory`
     ``simulation``      `simulate`: a motion with every impact, exact or by a method with a time step

@@ -19,46 +19,23 @@ import copy
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
 from beam import ModalModel
-from beam.parameters import (
-    InvalidType,
-    InvalidValue,
-    final,
-    require,
-    require_array,
-    require_each,
-    require_kind,
-    require_within,
-    shown,
-    suspect,
-)
+from beam.parameters import InvalidValue, final, require, require_array, require_kind, require_within, shown
 from contact.drive import HarmonicDrive
 from contact.flight.motion import Motion, motion_of, stacked, with_drive
 from contact.laws import NewtonRestitution
-from contact.stop import Stop, check_apart
-
-GREATEST_GAP = 1.0  # gap beyond which a warning is given [m]; lengths in units of the gap give just this
-
-GREATEST_AMPLITUDE = 0.1
-"""Amplitude of a base motion beyond which a warning is given [m]: the stroke of large vibration exciters is
-50 mm, and the letter's drive moved by 1.5 mm.  Exactly 1 asks for the response per unit amplitude."""
-
-HIGHEST_DRIVE, SLOWEST_DRIVE = 2.0, 0.01
-"""Drive frequencies above the first, over the highest mode, and below the second, over the lowest one, bring
-a warning: a mode is missing, or the tip moves by less than 1e-4 of the motion of the base."""
+from contact.plausible import suspect_sizes
+from contact.stop import Stop, given_stops, rows_of
 
 
 def dynamic_stiffness(omega: np.ndarray, decay_rate: np.ndarray, w: float) -> np.ndarray:
     """E_k = omega_k^2 - w^2 + i c_k w of modes driven at frequency `w` [rad/s], complex [1/s^2]."""
     # (omega - w)(omega + w) keeps its digits close to resonance, where omega^2 - w^2 would lose them
     return np.asarray((omega - w) * (omega + w) + 1j * decay_rate * w)
-
-
-class _OnlyStop(tuple[Stop, ...]):
-    """The stops of an oscillator that was made with `stop`, which may be replaced."""
 
 
 @final
@@ -82,14 +59,25 @@ class ImpactOscillator:
     Simulation takes any number of stops.  What holds for a single stop at the tip, such as collisions, maps
     and periodic orbits, refuses others in one sentence.
 
-    A gap above `GREATEST_GAP`, or a drive amplitude above `GREATEST_AMPLITUDE` and ten gaps, brings a
-    SuspiciousValue warning unless the model is `dimensionless`; so does a drive slower than `SLOWEST_DRIVE`.
+    Sizes that no spring and no exciter has bring a SuspiciousValue warning (``contact.plausible``).
     """
 
     model: ModalModel
     stops: tuple[Stop, ...]
     drive: HarmonicDrive | None = None
     load: np.ndarray | None = None
+    _rows: ClassVar[list[np.ndarray]]  # weights of the modes in the height over each stop, (n_modes,) each
+
+    if TYPE_CHECKING:
+        stop: Stop  # for ``dataclasses.replace``
+    else:
+
+        @property
+        def stop(self) -> Stop:
+            """The only stop; ValueError for several."""
+            if len(self.stops) > 1:
+                raise InvalidValue(self._elsewhere)
+            return self.stops[0]
 
     def __init__(
         self,
@@ -100,14 +88,7 @@ class ImpactOscillator:
         drive: HarmonicDrive | None = None,
         load: np.ndarray | None = None,
     ) -> None:
-        if stop is not None and (stops is None or isinstance(stops, _OnlyStop)):
-            stops = _OnlyStop((require_kind("stop", stop, Stop, "a Stop"),))
-        require(
-            stop is None or isinstance(stops, _OnlyStop), "stop and stops are both given; give one of them"
-        )
-        require(stops is not None, "stop is missing; give a Stop, or several as stops")
-        require_each("stops", stops, Stop, "a sequence of Stop")
-        given = stops if isinstance(stops, _OnlyStop) else (_OnlyStop if len(stops) == 1 else tuple)(stops)
+        given = given_stops(stop, stops)
         vars(self).update(model=model, stops=given, drive=drive, load=load)
         self._check()
 
@@ -115,68 +96,20 @@ class ImpactOscillator:
         """Refuse what cannot be followed, and warn of what can hardly be meant."""
         require_kind("model", self.model, ModalModel, "a ModalModel")
         require_kind("drive", self.drive, (HarmonicDrive, type(None)), "a HarmonicDrive or None")
-        require(len(self.stops) > 0, "stops is empty; it must hold at least one Stop")
         omega, decay = self.model.omega, self.model.decay_rate
-        check_apart(self.stops, self._rows)
-        for law in (stop.law for stop in self.stops):
-            if law.one_mode_only and omega.size > 1:
-                raise InvalidType(
-                    f"law of the stop is {type(law).__name__}, which holds for one mode; the model has "
-                    f"{omega.size}, so give a force law or NewtonRestitution, or truncate the model"
-                )
+        vars(self).update(_rows=rows_of(self.stops, self.model))
         if self.load is not None:
             words = f"{omega.size} finite modal loads"
             load = require_array("load", self.load, "N kg^-0.5", shape=omega.shape, words=words)
             object.__setattr__(self, "load", load)
-        if not self.model.dimensionless:
-            self._suspect_metres()
+        gap = min(stop.gap for stop in self.stops)
+        suspect_sizes(self.model, max(stop.gap for stop in self.stops), self.drive)
         if self.drive is None:
             return
-        gap = min(stop.gap for stop in self.stops)
         require(gap > 0, "gap", f"is {gap} m; for a driven spring it must be above zero")
         resonant = (omega == self.drive.angular_frequency) & (decay == 0)
         words = f"{self.drive.frequency:g} Hz, that of an undamped mode without steady motion; it must differ"
         require(not np.any(resonant), "frequency of the drive", f"is {words}")
-        self._suspect(self.drive)
-
-    def _suspect_metres(self) -> None:
-        """Warn of a gap or an amplitude that no leaf spring and no exciter has."""
-        gap = max(stop.gap for stop in self.stops)
-        amplitude = 0.0 if self.drive is None else self.drive.amplitude
-        remedy = "millimetres may have been meant; in units of your own give ModalModel(dimensionless=True)"
-        if gap > GREATEST_GAP:
-            suspect(f"gap is {gap:g} m; above {GREATEST_GAP:g} m no leaf spring moves that far, and {remedy}")
-        if amplitude > max(GREATEST_AMPLITUDE, 10.0 * gap) and amplitude != 1.0:
-            given = f"amplitude of the drive is {amplitude:g} m with a gap of {gap:g} m"
-            suspect(f"{given}; exciters move by some centimetres at most, and {remedy}")
-
-    def _suspect(self, drive: HarmonicDrive) -> None:
-        """Warn of a frequency that no exciter of this spring has."""
-        highest = float(self.model.omega.max())
-        if 0.0 < HIGHEST_DRIVE * highest < drive.angular_frequency:
-            suspect(
-                f"frequency of the drive is {drive.frequency:g} Hz, far above the highest retained mode at "
-                f"{highest / (2 * np.pi):g} Hz; modes that the drive excites are missing"
-            )
-        oscillating = self.model.omega[self.model.omega > 0]
-        if oscillating.size and drive.angular_frequency < SLOWEST_DRIVE * float(oscillating.min()):
-            suspect(
-                f"frequency of the drive is {drive.frequency:g} Hz, below {SLOWEST_DRIVE:g} of the lowest "
-                f"mode at {oscillating.min() / (2 * np.pi):g} Hz; the spring then follows its base and does "
-                "not bend"
-            )
-
-    @property
-    def stop(self) -> Stop:
-        """The only stop; ValueError for several."""
-        if len(self.stops) == 1:
-            return self.stops[0]
-        raise InvalidValue(f"stops has {len(self.stops)} entries; this holds for one stop, so give stop=")
-
-    @cached_property
-    def _rows(self) -> list[np.ndarray]:
-        """The weights of the modes in the height over each stop."""
-        return [stop.row_in(self.model) for stop in self.stops]
 
     @property
     def n_modes(self) -> int:
@@ -254,11 +187,8 @@ class ImpactOscillator:
 
     def tip_response(self) -> complex:
         """Tip displacement per base amplitude without contact, complex [1]."""
-        return self._response(self._only_at_one_metre)
-
-    @staticmethod
-    def _response(motion: Motion) -> complex:
-        return complex(motion.tip_sine, motion.tip_cosine)
+        seen = self._only_at_one_metre
+        return complex(seen.tip_sine, seen.tip_cosine)
 
     @cached_property
     def mean_height(self) -> float:
@@ -284,11 +214,11 @@ class ImpactOscillator:
         return abs(phasor), float(np.angle(phasor) % (2.0 * np.pi)) / w
 
     def grazing_amplitude(self) -> float:
-        """Base amplitude Z_g at which the steady motion just touches the stop, or the first of several [m]."""
+        """Base amplitude Z_g at which the steady motion just touches a stop, the first of several [m]."""
         self._require_steady()
         reached = []
         for seen in self._at_one_metre:
-            level, gap, response = seen.level, seen.gap, abs(self._response(seen))
+            level, gap, response = seen.level, seen.gap, seen.amplitude
             words = f"the static displacement {level + gap:g} m must stay below it"
             require(level < 0.0, f"gap is {gap} m; {words}")
             reached += [-level / response] if response > 0.0 else []
@@ -310,8 +240,7 @@ class ImpactOscillator:
     def motion(self) -> Motion:
         """The numbers of an oscillator with one stop at the tip, as the kernels take them; not to be written
         into.  ValueError is raised for several stops, or one elsewhere."""
-        if self._elsewhere:
-            raise InvalidValue(self._elsewhere)
+        _ = self._only_at_one_metre
         return self._motion
 
     def numbers(self) -> Motion:

@@ -2,12 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from beam import ModalModel
-from beam.parameters import InvalidType, InvalidValue, final, require, require_kind, require_within, shown
+from beam.parameters import (
+    InvalidType,
+    InvalidValue,
+    final,
+    require,
+    require_each,
+    require_kind,
+    require_within,
+    shown,
+)
 from contact.laws import ContactLaw
 
 PARALLEL = 1e-12  # relative difference within which two stops are met by the same motion
@@ -62,18 +72,44 @@ class Stop:
         return float(self.side) * (rows[0] if len(rows) == 1 else rows[0] - rows[1])
 
 
-def check_apart(stops: tuple[Stop, ...], rows: list[np.ndarray]) -> None:
-    """Refuse stops that no mode moves, that lie at one place, or that leave a point no clearance."""
-    sizes = [float(np.linalg.norm(row)) for row in rows]
-    for stop, size in zip(stops, sizes, strict=True):
+class OnlyStop(tuple[Stop, ...]):
+    """The stop of an oscillator that has one; ``dataclasses.replace(oscillator, stop=...)`` changes it."""
+
+
+def given_stops(stop: Stop | None, stops: Sequence[Stop] | None) -> tuple[Stop, ...]:
+    """The stops of an oscillator from one of the two ways to give them."""
+    if stop is not None:
+        words = "stop and stops are both given; give one of them"
+        require(stops is None or isinstance(stops, OnlyStop), words)
+        return OnlyStop((require_kind("stop", stop, Stop, "a Stop"),))
+    given = require_each("stops", () if stops is None else stops, Stop, "a sequence of Stop")
+    require(len(given) > 0, "stop is missing; give a Stop, or at least one Stop in stops")
+    return OnlyStop(given) if len(given) == 1 else given
+
+
+def rows_of(stops: tuple[Stop, ...], model: ModalModel) -> list[np.ndarray]:
+    """The row of each stop in a model; refuses stops that no mode moves, that lie at one place, or that leave
+    a point no clearance, and laws that hold for one mode."""
+    rows, units, ways = [stop.row_in(model) for stop in stops], list[np.ndarray](), list[float]()
+    for i, (stop, row) in enumerate(zip(stops, rows, strict=True)):
+        size, law = float(np.linalg.norm(row)), type(stop.law).__name__
         require(size > 0.0, "at", f"is {shown(stop.at)}, a point that no mode moves towards the stop")
-    for i in range(len(stops)):
-        for j in range(i):
-            a, b = rows[i] / sizes[i], rows[j] / sizes[j]
-            near, far = stops[j].gap / sizes[j], stops[i].gap / sizes[i]
-            if np.linalg.norm(a - b) <= PARALLEL and abs(near - far) <= PARALLEL * max(near, far):
-                words = f"stops {j} and {i} are met by the same motion at the same time; one must go"
-                raise InvalidValue("gap", f"is {stops[j].gap} m and {stops[i].gap} m, and {words}")
-            if np.linalg.norm(a + b) <= PARALLEL and not near + far > 0.0:
-                words = f"stops {j} and {i} hold the point from both sides; their total must be above zero"
-                raise InvalidValue("gap", f"is {stops[j].gap} m and {stops[i].gap} m, and {words}")
+        if stop.law.one_mode_only and row.size > 1:
+            raise InvalidType(
+                f"law of the stop is {law}, which holds for one mode; the model has {row.size}, so give a "
+                "force law or NewtonRestitution, or truncate the model"
+            )
+        unit, way = row / size, stop.gap / size
+        for j, (other, reach) in enumerate(zip(units, ways, strict=True)):
+            gaps, limit = (
+                f"is {stops[j].gap} m and {stop.gap} m at stops {j} and {i}",
+                PARALLEL * max(way, reach),
+            )
+            same = np.linalg.norm(unit - other) <= PARALLEL and abs(way - reach) <= limit
+            require(not same, "gap", f"{gaps}, which lie at one place; one of them must go")
+            closed = np.linalg.norm(unit + other) <= PARALLEL and not way + reach > 0.0
+            require(
+                not closed, "gap", f"{gaps}, which hold the point from both sides; it must have clearance"
+            )
+        units, ways = [*units, unit], [*ways, way]
+    return rows

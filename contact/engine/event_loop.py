@@ -196,12 +196,12 @@ def reached(height_over: Callable[..., int]) -> Callable[..., bool]:
             if j == run.stop:
                 continue
             order = height_over(motion, run, weight, own, series, out)
-            size, away, power = abs(own[0]) + own[3] + own[4], 0.0, 1.0
+            size, away, reach = abs(own[0]) + own[3] + own[4], 0.0, 1.0
             for k in range(u.size):
                 size += abs(weight[k]) * (abs(u[k]) + abs(v[k]) * motion.modes[TIME_SCALE, k])
             for n in range(1, order + 1):
-                power *= s
-                away += abs(out[n]) * power
+                reach *= s
+                away += abs(out[n]) * reach
             margin = 8.0 * EPS * size
             out[0] += 2.0 * margin
             if order > 0 and out[0] + away > -margin:

@@ -134,9 +134,9 @@ def trajectory_of(
     log, touches = recorder.log[:logged].copy(), recorder.log_state[:logged].reshape(logged, 2, 2, n).copy()
     edges = np.flatnonzero(np.diff(log["stop"], prepend=-1, append=-1))
     views = views_of(motion)
-    for first, last in pairwise(edges.tolist()):  # touches of one stop in a row
-        seen = views[log["stop"][first]]
-        TOUCHES[seen.law].improve(seen, log[first:last], touches[first:last])
+    for a, b in pairwise(edges.tolist()):  # touches of one stop in a row
+        seen = views[log["stop"][a]]
+        TOUCHES[seen.law].improve(seen, log[a:b], touches[a:b])
     rows = np.concatenate((recorder.strobes, recorder.samples))
     q, v = rows[:, :n].copy(), rows[:, n:].copy()
     if deviations:

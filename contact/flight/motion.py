@@ -7,7 +7,7 @@ propagating eight modes.)  The equations are those of ``contact.flight.modal_flo
 
 An oscillator with several stops has one `Motion` too, in which their tables are stacked.  Each stop sees the
 same modes with weights and numbers of its own, and `seen_from` gives the `Motion` as one of them sees it.
-Kernels of flights, touches and laws take such a view; only the loops that choose between stops take the stack.
+Kernels of flights, touches and laws take such a view; only loops that choose between stops take the stack.
 """
 
 import math
