@@ -35,7 +35,8 @@ The files: the problem and its answer
     ``stop``            `Stop`: a gap, a law, and where it lies
     ``plausible``       warnings of sizes that no spring has
     ``oscillator``      `ImpactOscillator`: a ``beam.ModalModel``, stops and a drive; the equation of motion
-    ``trajectory``      `State`, `Impacts`, `Trajectory`
+    ``impacts``         `Impacts`: every touch of a motion
+    ``trajectory``      `State`, `Trajectory`
     ``simulation``      `simulate`: a motion with every impact, exact or by a method with a time step
     ``virtual_motion``  the motion of mode 1 as if there were no stop
     ``collision``       `collisions`: the effect of each collision on mode 1; `first_collision`
@@ -75,6 +76,7 @@ from contact.errors import (
     TouchedAtOnce,
     UnresolvedCrossing,
 )
+from contact.impacts import Impacts
 from contact.laws import ContactLaw, HertzContact, HuntCrossley, LinearContact, NewtonRestitution
 from contact.maps.nonlinear_mode import NonlinearMode
 from contact.maps.nordmark import NordmarkMap
@@ -88,7 +90,7 @@ from contact.simulation import simulate
 from contact.stop import Stop
 from contact.touch.delayed import DelayedRestitution
 from contact.touch.power_law import PowerContact
-from contact.trajectory import ImpactKind, Impacts, Regime, State, Trajectory
+from contact.trajectory import ImpactKind, Regime, State, Trajectory
 
 __version__ = "0.9.0"
 

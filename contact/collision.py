@@ -35,9 +35,10 @@ import numpy as np
 from beam.parameters import InvalidValue, require, require_kind, require_whole
 from contact.flight.modal_flow import free_flow, propagate, steady_motion, tip_rounding
 from contact.flight.motion import INVERSE_OMEGA, LOAD, Motion, with_only_mode
-from contact.oscillator import ImpactOscillator
+from contact.impacts import Impacts
+from contact.oscillator import ImpactOscillator, require_one_stop
 from contact.simulation import simulate
-from contact.trajectory import ImpactKind, Impacts, State, Trajectory
+from contact.trajectory import ImpactKind, State, Trajectory
 from contact.virtual_motion import VirtualMotion
 
 
@@ -239,7 +240,7 @@ def first_collision(
 
 def before_collision(oscillator: ImpactOscillator) -> State:
     """The steady motion of a driven `oscillator`, where the tip is lowest in the first drive period."""
-    require_kind("oscillator", oscillator, ImpactOscillator, "an ImpactOscillator")
+    require_one_stop(oscillator, "a collision")
     _ = oscillator.mean_height  # refuses an oscillator without a steady motion
     motion = oscillator.motion()
     lowest = math.atan2(-motion.tip_sine, -motion.tip_cosine) % (2 * math.pi) / motion.drive

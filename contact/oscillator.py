@@ -75,9 +75,7 @@ class ImpactOscillator:
         @property
         def stop(self) -> Stop:
             """The only stop; ValueError for several."""
-            if len(self.stops) > 1:
-                raise InvalidValue(self._elsewhere)
-            return self.stops[0]
+            return self.stops[0] if len(self.stops) == 1 else self.only_stop("this")
 
     def __init__(
         self,
@@ -240,25 +238,21 @@ class ImpactOscillator:
     def motion(self) -> Motion:
         """The numbers of an oscillator with one stop at the tip, as the kernels take them; not to be written
         into.  ValueError is raised for several stops, or one elsewhere."""
-        _ = self._only_at_one_metre
+        self.only_stop("this")
         return self._motion
 
     def numbers(self) -> Motion:
         """The numbers with all stops, as simulation takes them; not to be written into."""
         return self._motion
 
-    @cached_property
-    def _elsewhere(self) -> str:
-        """Why this is no oscillator with one stop at the tip; empty if it is one."""
-        if len(self.stops) > 1:
-            return f"stops has {len(self.stops)} entries; this holds for one stop, so give stop="
-        if self.stops[0].at == "tip" and self.stops[0].side == 1:
-            return ""
+    def only_stop(self, what: str) -> Stop:
+        """The only stop, at the tip and on its positive side; ValueError says that `what` needs this."""
+        words = f"{what} needs one stop at the tip, on its positive side"
+        require(len(self.stops) == 1, "stops", f"has {len(self.stops)} entries; {words}")
         at, side = self.stops[0].at, self.stops[0].side
-        words = "this holds for a stop at the tip and on its positive side"
-        return (
-            f"stop is at {at!r}, side {side:+d}; {words}, so give a model whose phi is the row of that stop"
-        )
+        hint = "give a model whose phi is the row of that stop"
+        require(at == "tip" and side == 1, "stop", f"is at {at!r}, side {side:+d}; {words}, so {hint}")
+        return self.stops[0]
 
     @cached_property
     def _motion(self) -> Motion:
@@ -268,8 +262,7 @@ class ImpactOscillator:
 
     @property
     def _only_at_one_metre(self) -> Motion:
-        if self._elsewhere:
-            raise InvalidValue(self._elsewhere)
+        self.only_stop("this")
         return self._at_one_metre[0]
 
     @cached_property
@@ -290,3 +283,10 @@ class ImpactOscillator:
             )
             for stop, row in zip(self.stops, self._rows, strict=True)
         ]
+
+
+def require_one_stop(oscillator: object, what: str) -> ImpactOscillator:
+    """The oscillator, refused unless it is one, with `ImpactOscillator.only_stop` for `what`."""
+    given: ImpactOscillator = require_kind("oscillator", oscillator, ImpactOscillator, "an ImpactOscillator")
+    given.only_stop(what)
+    return given

@@ -7,9 +7,9 @@ A modal state is a displacement q_k [m kg^0.5] and a velocity q_k' [m kg^0.5 / s
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from enum import IntEnum
-from functools import cached_property
+from pathlib import Path
 
 import numpy as np
 
@@ -23,9 +23,7 @@ from beam.parameters import (
     require_within,
     shown,
 )
-from contact.drive import split_time
-from contact.flight.modal_flow import steady_motion
-from contact.flight.motion import Motion
+from contact.impacts import Impacts
 from contact.oscillator import ImpactOscillator
 
 
@@ -131,129 +129,6 @@ class Run:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Impacts:
-    """The touches of the tip, in the order in which they began.
-
-    Times are kept as drive periods and the rest, and states as deviations u = q - q_s and v = q' - q_s' from
-    the steady motion q_s of the `oscillator`.  Both are right to rounding however long the run.  Times in
-    seconds and modal states are made of them on demand.
-
-    Parameters
-    ----------
-    period : ndarray of int, shape (n_impacts,)
-        Number of the drive period in which a touch begins.
-    clock, end_clock : ndarray, shape (n_impacts,)
-        First touch and release, counted from the strobe that begins this period [s]; equal for an impact
-        law, the second NaN for a contact that had not ended.
-    approach, rebound : ndarray, shape (n_impacts,)
-        Velocity at both, positive towards the stop [m/s]; an approach before the run is NaN.
-    loss : ndarray, shape (n_impacts,)
-        Energy that the tip has given to the stop [J].  A contact that has ended has lost it; in one still
-        closed it includes what the stop stores.  That of a stay is the energy of the hops before it.
-    impulse : ndarray, shape (n_impacts,)
-        Integral of the contact force over the touch, to the end of the run if it is still closed [N s].  A
-        stay includes the impulse of the hops before it.
-    peak_force : ndarray, shape (n_impacts,)
-        Largest contact force in the touch, so far if it is still closed [N].  NaN if the law acts at once,
-        without a force: an impact under Newton's law or a delayed rebound.  A stay has the largest force that
-        holds the tip.  A method with a time step gives the largest force at its grid points.
-    kind : ndarray of int, shape (n_impacts,)
-        Values of `ImpactKind`.
-    stop : ndarray of int, shape (n_impacts,)
-        Numbers of the stops, from 0 on.
-    deviations_start, deviations_end : ndarray, shape (n_impacts, 2, n_modes)
-        Deviations (u, v) just before the touch and just after the release.
-    """
-
-    oscillator: ImpactOscillator = field(repr=False)
-    period: np.ndarray
-    clock: np.ndarray
-    end_clock: np.ndarray
-    approach: np.ndarray
-    rebound: np.ndarray
-    loss: np.ndarray
-    impulse: np.ndarray
-    peak_force: np.ndarray
-    kind: np.ndarray
-    stop: np.ndarray
-    deviations_start: np.ndarray
-    deviations_end: np.ndarray
-
-    def __len__(self) -> int:
-        return int(self.clock.size)
-
-    @staticmethod
-    def of_states(
-        oscillator: ImpactOscillator, *, times: np.ndarray, states: np.ndarray, **numbers: np.ndarray
-    ) -> Impacts:
-        """Touches that another program has found; `numbers` are approach to stop of the list above.
-
-        Without impulse or peak force these are NaN, and without numbers of the stops these are 0.
-
-        `times` [s] has the shape (2, n_impacts), and the modal states (q, q') have (2, n_impacts, 2,
-        n_modes): first the touches, then the releases.
-        """
-        count = times.shape[1]
-        unknown = dict.fromkeys(("impulse", "peak_force"), np.full(count, np.nan))
-        unknown["stop"] = np.zeros(count, dtype=np.int64)
-        given, valid = ", ".join(sorted(numbers.keys() - unknown.keys())), "approach, kind, loss, rebound"
-        require(given == valid, f"numbers has {given or 'no entries'}; it must have {valid}")
-        period, clock = split_time(times[0], oscillator.period)
-        end_clock, motion = times[1] - period * oscillator.period, oscillator.numbers()
-        before, after = states - steady_states(motion, np.array([clock, end_clock]) % motion.period)
-        return Impacts(
-            oscillator=oscillator,
-            period=period,
-            clock=clock,
-            end_clock=end_clock,
-            deviations_start=before,
-            deviations_end=after,
-            **(unknown | numbers),
-        )
-
-    @cached_property
-    def start(self) -> np.ndarray:
-        """Times of the first touch [s], shape (n_impacts,)."""
-        return self.period * self.oscillator.period + self.clock
-
-    @cached_property
-    def end(self) -> np.ndarray:
-        """Times of the release [s], shape (n_impacts,)."""
-        return self.period * self.oscillator.period + self.end_clock
-
-    @cached_property
-    def duration(self) -> np.ndarray:
-        """Lengths of the touches [s], shape (n_impacts,): 0 under Newton's law, NaN for one still closed."""
-        return self.end_clock - self.clock
-
-    @cached_property
-    def _steady(self) -> tuple[tuple[np.ndarray, np.ndarray], ...]:
-        """Steady displacements and velocities at `start`, and at `end`."""
-        motion = self.oscillator.numbers()
-        return tuple(steady_motion(motion, np.fmod(at, motion.period)) for at in (self.clock, self.end_clock))
-
-    @cached_property
-    def displacement_start(self) -> np.ndarray:
-        """Modal displacements just before the touch [m kg^0.5], shape (n_impacts, n_modes)."""
-        return self._steady[0][0] + self.deviations_start[:, 0]
-
-    @cached_property
-    def velocity_start(self) -> np.ndarray:
-        """Modal velocities just before the touch [m kg^0.5 / s], shape (n_impacts, n_modes)."""
-        return self._steady[0][1] + self.deviations_start[:, 1]
-
-    @cached_property
-    def displacement_end(self) -> np.ndarray:
-        """Modal displacements just after the release [m kg^0.5], shape (n_impacts, n_modes)."""
-        return self._steady[1][0] + self.deviations_end[:, 0]
-
-    @cached_property
-    def velocity_end(self) -> np.ndarray:
-        """Modal velocities just after the release [m kg^0.5 / s], shape (n_impacts, n_modes)."""
-        return self._steady[1][1] + self.deviations_end[:, 1]
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
 class Trajectory:
     """A motion of an `oscillator`: strobed states, sampled states, every impact, and the state at the `end`.
 
@@ -283,12 +158,49 @@ class Trajectory:
     impacts: Impacts = field(repr=False)
     evaluations: int = 0
 
+    def save(self, path: str | Path) -> None:
+        """Write the motion into a file of the kind that its name ends with.
 
-def steady_states(motion: Motion, clock: float | np.ndarray) -> np.ndarray:
-    """States (q_s, q_s') of the steady motion at times `clock` since a strobe, shape (..., 2, n_modes)."""
-    return np.stack(steady_motion(motion, clock), axis=-2)
+        ``.npz`` keeps every number, for `load`; ``.csv`` has one line a touch, for other programs.
+        ValueError is raised for another ending.
+        """
+        if str(path).endswith(".csv"):
+            self.impacts.write_csv(path)
+            return
+        require(str(path).endswith(".npz"), "path", f"is {shown(str(path))}; it must end with .npz or .csv")
+        arrays = {name: getattr(self, name) for name in _ARRAYS}
+        arrays |= {f"impacts_{name}": getattr(self.impacts, name) for name in _COLUMNS}
+        arrays |= {f"end_{name}": np.asarray(getattr(self.end, name)) for name in _STATE}
+        np.savez_compressed(path, numbers=_fingerprint(self.oscillator), **arrays)
+
+    @staticmethod
+    def load(path: str | Path, oscillator: ImpactOscillator) -> Trajectory:
+        """The motion that `save` has written into an ``.npz`` file.
+
+        The file does not keep the oscillator, since a law may hold functions.  ValueError is raised if
+        `oscillator` has other numbers than the one that moved, or if the file holds no such motion.
+        """
+        with np.load(path, allow_pickle=False) as file:
+            known = {"numbers", *_ARRAYS, *(f"impacts_{x}" for x in _COLUMNS), *(f"end_{x}" for x in _STATE)}
+            words = "it must be a motion that Trajectory.save has written"
+            require(set(file.files) == known, "path", f"is {shown(str(path))}, {words}")
+            same = np.array_equal(file["numbers"], _fingerprint(oscillator))
+            require(same, "oscillator", f"has other numbers than the one that moved in {shown(str(path))}")
+            end = {name: file[f"end_{name}"] for name in _STATE}
+            numbers = {name: value if value.ndim else value.item() for name, value in end.items()}
+            columns = {name: file[f"impacts_{name}"] for name in _COLUMNS}
+            arrays = {name: file[name] if file[name].ndim else file[name].item() for name in _ARRAYS}
+        impacts = Impacts(oscillator=oscillator, **columns)
+        return Trajectory(oscillator=oscillator, end=State(**numbers), impacts=impacts, **arrays)
 
 
-def deviations(motion: Motion, time: float, q: np.ndarray, q_rate: np.ndarray) -> np.ndarray:
-    """Deviations (u, v) of the modal state (q, q') from the steady motion at a time, shape (2, n_modes)."""
-    return np.array([q, q_rate]) - steady_states(motion, math.fmod(time, motion.period))
+_ARRAYS, _COLUMNS, _STATE = (
+    tuple(one.name for one in fields(kind) if one.name not in ("oscillator", "end", "impacts"))
+    for kind in (Trajectory, Impacts, State)
+)
+"""What a file of a motion holds: the arrays of it, of its touches and of its end."""
+
+
+def _fingerprint(oscillator: ImpactOscillator) -> np.ndarray:
+    """All numbers of an oscillator in one row."""
+    return np.concatenate([np.ravel(part) for part in oscillator.numbers()]).astype(float)

@@ -32,8 +32,9 @@ FLOORS = {
     "damping modal_model modal_change reduction frequency_equation finite_rotation backbone harmonic_balance "
     "spring_mesh space export __init__",
     "contact": "errors machine speed_table restitution laws stop drive flight plausible oscillator "
-    "trajectory touch engine integrators simulation sensitivity one_mode maps virtual_motion collision "
-    "orbits.families orbits.branches orbits.shooting orbits.observation orbits.__init__ __init__ warm_up",
+    "impacts trajectory touch engine integrators simulation sensitivity one_mode maps virtual_motion "
+    "collision orbits.families orbits.branches orbits.shooting orbits.observation orbits.__init__ __init__ "
+    "warm_up",
     "studies": "__init__ letter shell.files shell.programs shell.scene shell physics shell.study "
     "shell.every_study experiment spring methods measurement explore pictures tour report __main__",
 }

@@ -11,12 +11,15 @@ import numpy as np
 
 from contact.errors import ContactError
 from contact.flight.modal_flow import propagate_flight, steady_motion
-from contact.flight.motion import views_of
+from contact.flight.motion import Motion, views_of
+from contact.impacts import Impacts, steady_states
 from contact.machine.compiled import inlined, kernel, part
 from contact.oscillator import ImpactOscillator
 from contact.touch import TOUCHES
 from contact.touch.passage import MARKS, TOUCH, new_touches, put_state
-from contact.trajectory import STAY, Impacts, Run, State, Trajectory, steady_states
+from contact.trajectory import STAY, Run, State, Trajectory
+
+COPIED = "approach", "rebound", "loss", "impulse", "peak_force", "kind", "stop"  # columns of the log
 
 
 class Recorder(NamedTuple):
@@ -110,6 +113,14 @@ def grown(recorder: Recorder) -> Recorder:
     )
 
 
+def improve(views: list[Motion], log: np.ndarray, touches: np.ndarray) -> None:
+    """Better the finished log of a run by the laws of its stops."""
+    edges = np.flatnonzero(np.diff(log["stop"], prepend=-1, append=-1))
+    for a, b in pairwise(edges.tolist()):  # touches of one stop in a row
+        seen = views[int(log["stop"][a])]
+        TOUCHES[seen.law].improve(seen, log[a:b], touches[a:b])
+
+
 def trajectory_of(
     recorder: Recorder,
     run: Run,
@@ -132,11 +143,7 @@ def trajectory_of(
         raise ContactError(**place, detail="the state at one of the times was not written down")
     logged, passed = int(marks["logged"]), run.last - run.first
     log, touches = recorder.log[:logged].copy(), recorder.log_state[:logged].reshape(logged, 2, 2, n).copy()
-    edges = np.flatnonzero(np.diff(log["stop"], prepend=-1, append=-1))
-    views = views_of(motion)
-    for a, b in pairwise(edges.tolist()):  # touches of one stop in a row
-        seen = views[log["stop"][a]]
-        TOUCHES[seen.law].improve(seen, log[a:b], touches[a:b])
+    improve(views_of(motion), log, touches)
     rows = np.concatenate((recorder.strobes, recorder.samples))
     q, v = rows[:, :n].copy(), rows[:, n:].copy()
     if deviations:
@@ -157,13 +164,7 @@ def trajectory_of(
         period=number,
         clock=(log["period"] - number) * period + log["start"],
         end_clock=(log["end_period"] - number) * period + log["end"],
-        approach=log["approach"].copy(),
-        rebound=log["rebound"].copy(),
-        loss=log["loss"].copy(),
-        impulse=log["impulse"].copy(),
-        peak_force=log["peak_force"].copy(),
-        kind=log["kind"].copy(),
-        stop=log["stop"].copy(),
+        **{name: log[name].copy() for name in COPIED},
         deviations_start=touches[:, 0],
         deviations_end=touches[:, 1],
     )

@@ -108,8 +108,8 @@ def peak_of_drive(motion):
 def lowest_mode(motion, flight, base, span, peak, rest, margin):
     """The bounds for a `span` of times of a flight that starts a time `base` after a strobe [s].
 
-    `flight` holds its start, `peak` is `peak_of_drive`, `rest` is r, infinite if a mode of zero frequency takes part [m], and `margin`
-    the rounding bound of the tip displacement [m].
+    `flight` holds its start, `peak` is `peak_of_drive`, `rest` is r, infinite if a mode of zero frequency
+    takes part [m], and `margin` the rounding bound of the tip displacement [m].
     """
     w, gap, omega, period = motion.drive, -motion.level, motion.modes[OMEGA, 0], motion.period
     u, v = flight[START_U, 0], flight[START_V, 0]

@@ -200,15 +200,15 @@ def searched_flight(motion, flight, base, duration, contact_order):
         outcome, s = searched_span(
             motion, flight, base, span, 0 if off else contact_order, peak, must, margin
         )
-        if outcome != FREE or end >= duration:
-            return outcome, s
-        first, end = end, duration
+        if outcome != FREE or s >= duration:
+            return outcome, min(s, duration)
+        first, end = s, duration
 
 
 @part
 def searched_span(motion, flight, base, span, contact_order, peak, must, margin):
-    """The first crossing in a `span` of times of a flight [s], to its start off the wall if it is later."""
-    n, above, (first, duration) = motion.size, flight[rows.ABOVE], span
+    """The first crossing in a `span` of times of a flight [s], which is free up to there."""
+    n, above, duration = motion.size, flight[rows.ABOVE], span[1]
     lowest = lowest_mode(motion, flight, base, span, peak, above[0], margin)
     h, h_min = 0.05 * motion.period, 64.0 * EPS * (base + duration)
     if motion.fastest > 0.0:
@@ -221,6 +221,8 @@ def searched_span(motion, flight, base, span, contact_order, peak, must, margin)
         s = stretch_off_wall(motion, flight, base, contact_order, h, h_min)
         if s == 0.0:
             return UNRESOLVED, 0.0
+        if s >= duration:
+            return FREE, s
     least = max(must, 1)
     sampled, distance = least if contact_order == 0 else n, 0.0
     while s < duration:

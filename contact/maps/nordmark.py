@@ -31,11 +31,11 @@ from typing import ClassVar, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from beam.parameters import Array, require, require_array, require_kind, require_whole, require_within
+from beam.parameters import Array, require, require_array, require_whole, require_within
 from contact.machine.compiled import kernel
 from contact.maps.nordmark_coefficients import coefficients
 from contact.maps.protocol import Jacobians, StrobedOrbit, amplitude_factors
-from contact.oscillator import ImpactOscillator
+from contact.oscillator import ImpactOscillator, require_one_stop
 
 YLine = Literal["corrected", "printed"]
 
@@ -161,7 +161,7 @@ class NordmarkMap:
         `restitution` is the effective one; left out, it is the `local_restitution` of the oscillator, at the
         lowest speed if it depends on the speed, and a law without one (a force law) raises TypeError.
         """
-        require_kind("oscillator", oscillator, ImpactOscillator, "an ImpactOscillator")
+        require_one_stop(oscillator, "Nordmark's map")
         restitution = oscillator.local_restitution if restitution is None else restitution
         model, k = oscillator.model, oscillator.model.leading_mode
         return cls.from_mode(

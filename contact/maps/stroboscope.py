@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from beam.parameters import require, require_array, require_kind, require_whole
+from beam.parameters import require, require_array, require_whole
 from contact.drive import split_time
 from contact.engine.event_loop import DONE
 from contact.engine.start import failure, start_of, state_of
@@ -16,7 +16,7 @@ from contact.errors import UnresolvedCrossing
 from contact.maps.protocol import Jacobians, StrobedOrbit, amplitude_factors
 from contact.maps.protocol import StrobedMap as StrobedMap
 from contact.maps.strobed_motion import StrobedSystem, strobed_motion, strobed_system
-from contact.oscillator import ImpactOscillator
+from contact.oscillator import ImpactOscillator, require_one_stop
 from contact.sensitivity.change import Sensitivities
 from contact.sensitivity.replay import Replay
 from contact.simulation import require_state, simulate
@@ -33,7 +33,7 @@ class StroboscopicMap:
     oscillator: ImpactOscillator
 
     def __post_init__(self) -> None:
-        require_kind("oscillator", self.oscillator, ImpactOscillator, "an ImpactOscillator")
+        require_one_stop(self.oscillator, "a StroboscopicMap")
 
     @property
     def scale(self) -> float:

@@ -31,7 +31,7 @@ from beam.parameters import (
     shown,
 )
 from contact.flight.variation import Variation, variation
-from contact.oscillator import ImpactOscillator, dynamic_stiffness
+from contact.oscillator import ImpactOscillator, dynamic_stiffness, require_one_stop
 
 ARRAYS = ("omega", "decay_rate", "phi", "participation")
 Path = Callable[[float], ImpactOscillator]
@@ -97,7 +97,7 @@ class Sensitivities:
     changes: Sequence[Change] = ()
 
     def __post_init__(self) -> None:
-        require_kind("oscillator", self.oscillator, ImpactOscillator, "an ImpactOscillator")
+        require_one_stop(self.oscillator, "derivatives")
         changes = require_each("changes", self.changes, Change, "Change objects")
         object.__setattr__(self, "changes", changes)
         law, n = self.oscillator.stop.law, self.oscillator.n_modes

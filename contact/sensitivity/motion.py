@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from beam.parameters import Array, InvalidValue, require_array, require_kind
-from contact.oscillator import ImpactOscillator
+from contact.oscillator import ImpactOscillator, require_one_stop
 from contact.sensitivity.change import Change, Sensitivities
 from contact.sensitivity.replay import Replay, deviation_rates_at_strobe
 from contact.simulation import simulate
@@ -50,7 +50,7 @@ def motion_derivatives(
     states are wanted [s].  ValueError is raised if the state is in contact with the stop, and as by
     ``contact.simulate``; NoDerivative if the motion grazes the stop, or comes to rest on it.
     """
-    require_kind("oscillator", oscillator, ImpactOscillator, "an ImpactOscillator")
+    require_one_stop(oscillator, "derivatives")
     require_kind("state", state, State, "a State")
     if state.regime != Regime.OUTSIDE:
         raise InvalidValue(f"regime of the state is {int(state.regime)}; it must be 0, off the stop")

@@ -40,7 +40,7 @@ from contact.flight.polynomial_root import first_fall, first_polynomial_root, ho
 from contact.machine.compiled import kernel, part
 from contact.machine.vector_loops import LANES, next_modes, weighted_rows
 from contact.touch.exchange import exchange_of
-from contact.touch.series import WINDOW, limited_by_force, log_longest, powers_of, product
+from contact.touch.series import WINDOW, add_modes, limited_by_force, log_longest, powers_of, product
 from contact.trajectory import CONTACT, INSIDE, OUTSIDE
 
 LAW, METHOD = "HertzContact, HuntCrossley or PowerContact", "contact-series"
@@ -283,13 +283,9 @@ def step(motion, run, u, v, limit, series):
 def height_over(motion, run, weight, own, series, out):
     """The series of the height over another stop, in `out`; see ``contact.touch``."""
     rows = series.rows
-    at_u = rows.shape[1] - 2 * weight.size
     for n in range(ORDER + 1):
         out[n] = own[1] * rows[n, SINE] + own[2] * rows[n, COSINE]
-        for k in range(weight.size):
-            out[n] += weight[k] * rows[n, at_u + k]
-    out[0] += own[0]
-    return ORDER
+    return add_modes(rows, rows.shape[1] - 2 * weight.size, weight, own[0], out)
 
 
 @kernel

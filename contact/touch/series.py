@@ -106,6 +106,16 @@ def product(x, y, n):
 
 
 @part
+def add_modes(rows, first, weight, level, out):
+    """Add a level and the modes, from the column `first` on, to the series of a height; returns the order."""
+    for n in range(rows.shape[0]):
+        for k in range(weight.size):
+            out[n] += weight[k] * rows[n, first + k]
+    out[0] += level
+    return rows.shape[0] - 1
+
+
+@part
 def powers_of(s, out):
     """Fill `out` with 1, s, s^2, ..."""
     power = 1.0

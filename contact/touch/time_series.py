@@ -15,7 +15,7 @@ from contact.flight.modal_flow import speed_scale, tip_steady, tip_sum
 from contact.machine.compiled import kernel, part
 from contact.machine.vector_loops import next_order, weighted_rows
 from contact.touch.exchange import UNIFORM, exchange_of
-from contact.touch.series import limited_by_force, log_longest, powers_of
+from contact.touch.series import add_modes, limited_by_force, log_longest, powers_of
 from contact.trajectory import INSIDE
 
 ORDER = 30  # order of the series in time
@@ -113,11 +113,7 @@ def height_over(motion, run, weight, own, series, out):
     out[0], out[1] = own[1] * sine + own[2] * cosine, w * (own[1] * cosine - own[2] * sine)
     for n in range(ORDER - 1):
         out[n + 2] = -w * w * out[n] / ((n + 1.0) * (n + 2.0))
-    for n in range(ORDER + 1):
-        for k in range(weight.size):
-            out[n] += weight[k] * series.rows[n, k]
-    out[0] += own[0]
-    return ORDER
+    return add_modes(series.rows, 0, weight, own[0], out)
 
 
 @kernel

@@ -12,10 +12,10 @@ from scipy.optimize import brentq
 from simulated_orbit import beam
 
 from beam import InvalidValue
+from contact import Impacts, State
 from contact.collision import before_collision, collisions, first_collision
 from contact.laws import ContactLaw, HertzContact, HuntCrossley, LinearContact
 from contact.simulation import simulate
-from contact.trajectory import Impacts, State
 
 CASES = [(6, newton(0.3), 21.5), (6, HertzContact(stiffness=3e7), 21.5), (2, newton(1.0), 12.0)]
 CASES += [(4, HuntCrossley(stiffness=3e7, dissipation=2.0), 21.5)]

@@ -45,7 +45,7 @@ from contact.flight.polynomial_root import positive_roots
 from contact.laws import NewtonRestitution
 from contact.orbits.families.equations import shoot
 from contact.orbits.families.family import CLOSING, TouchOrbit
-from contact.oscillator import ImpactOscillator
+from contact.oscillator import ImpactOscillator, require_one_stop
 from contact.sensitivity.change import Sensitivities
 from contact.stop import Stop
 from contact.touch.newton import newton_impact
@@ -115,7 +115,7 @@ class SingleImpactFamily(ABC):
     period: int
 
     def __post_init__(self) -> None:
-        require_kind("oscillator", self.oscillator, ImpactOscillator, "an ImpactOscillator")
+        require_one_stop(self.oscillator, "an orbit")
         if self.oscillator.load is not None:
             raise InvalidValue("load is given; it must be None for orbits with one collision")
         self.oscillator.grazing_amplitude()  # the drive moves the tip
@@ -212,7 +212,7 @@ class MaximalFamily(SingleImpactFamily):
     ) -> Self:
         """The orbits of an oscillator; `restitution` [1] replaces its law."""
         if restitution is not None:
-            require_kind("oscillator", oscillator, ImpactOscillator, "an ImpactOscillator")
+            require_one_stop(oscillator, "an orbit")
             law = NewtonRestitution(local_restitution=restitution)
             oscillator = replace(oscillator, stop=Stop(gap=oscillator.stop.gap, law=law))
         return cls(oscillator=oscillator, period=period)

@@ -25,7 +25,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from beam.parameters import InvalidValue, require_array, require_kind, require_whole
+from beam.parameters import InvalidValue, require_array, require_whole
 from contact.engine.event_loop import DONE
 from contact.engine.start import failure
 from contact.flight.modal_flow import tip_rounding, tip_state
@@ -35,7 +35,7 @@ from contact.maps.strobed_motion import at_amplitude, strobed_motion, strobed_sy
 from contact.maps.stroboscope import StroboscopicMap
 from contact.orbits.observation.repetition import free_for_good, repetition
 from contact.orbits.observation.settling import TOLERANCE
-from contact.oscillator import ImpactOscillator
+from contact.oscillator import ImpactOscillator, require_one_stop
 from contact.touch.passage import STATE
 from contact.trajectory import OUTSIDE
 
@@ -130,7 +130,7 @@ class AmplitudeScan:
     most_cycles: int
 
     def __post_init__(self) -> None:
-        require_kind("oscillator", self.oscillator, ImpactOscillator, "an ImpactOscillator")
+        require_one_stop(self.oscillator, "a scan")
         _ = self.oscillator.driven
         why = f", to see a period of up to {LARGEST_PERIOD}"
         require_whole("most_cycles", self.most_cycles, "drive periods", low=2 * LARGEST_PERIOD, why=why)

@@ -25,12 +25,13 @@ import numpy as np
 
 from beam.parameters import Refusal, require_whole, require_within
 from contact.errors import ContactError
+from contact.impacts import deviations
 from contact.maps.protocol import require_map
 from contact.maps.stroboscope import StrobedMap, StrobedOrbit, StroboscopicMap
 from contact.orbits.families.family import PeriodicOrbit
 from contact.orbits.observation.repetition import free_for_good, period_of
 from contact.orbits.shooting import Shooting
-from contact.trajectory import State, deviations
+from contact.trajectory import State
 
 S = TypeVar("S")
 

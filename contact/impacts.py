@@ -1,0 +1,160 @@
+"""The touches of a motion as named arrays."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from beam.parameters import require
+from contact.drive import split_time
+from contact.flight.modal_flow import steady_motion
+from contact.flight.motion import Motion
+from contact.oscillator import ImpactOscillator
+
+CSV = dict(stop="1", kind="1", start="s", end="s", approach="m/s", rebound="m/s", loss="J")
+CSV |= dict(impulse="N s", peak_force="N")
+"""Columns of a table of touches and their units."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Impacts:
+    """The touches of the tip, in the order in which they began.
+
+    Times are kept as drive periods and the rest, and states as deviations u = q - q_s and v = q' - q_s' from
+    the steady motion q_s of the `oscillator`.  Both are right to rounding however long the run.  Times in
+    seconds and modal states are made of them on demand.
+
+    Parameters
+    ----------
+    period : ndarray of int, shape (n_impacts,)
+        Number of the drive period in which a touch begins.
+    clock, end_clock : ndarray, shape (n_impacts,)
+        First touch and release, counted from the strobe that begins this period [s]; equal for an impact
+        law, the second NaN for a contact that had not ended.
+    approach, rebound : ndarray, shape (n_impacts,)
+        Velocity at both, positive towards the stop [m/s]; an approach before the run is NaN.
+    loss : ndarray, shape (n_impacts,)
+        Energy that the tip has given to the stop [J].  A contact that has ended has lost it; in one still
+        closed it includes what the stop stores.  That of a stay is the energy of the hops before it.
+    impulse : ndarray, shape (n_impacts,)
+        Integral of the contact force over the touch, to the end of the run if it is still closed [N s].  A
+        stay includes the impulse of the hops before it.
+    peak_force : ndarray, shape (n_impacts,)
+        Largest contact force in the touch, so far if it is still closed [N].  NaN if the law acts at once,
+        without a force: an impact under Newton's law or a delayed rebound.  A stay has the largest force that
+        holds the tip.  A method with a time step gives the largest force at its grid points.
+    kind : ndarray of int, shape (n_impacts,)
+        Values of `ImpactKind`.
+    stop : ndarray of int, shape (n_impacts,)
+        Numbers of the stops, from 0 on.
+    deviations_start, deviations_end : ndarray, shape (n_impacts, 2, n_modes)
+        Deviations (u, v) just before the touch and just after the release.
+    """
+
+    oscillator: ImpactOscillator = field(repr=False)
+    period: np.ndarray
+    clock: np.ndarray
+    end_clock: np.ndarray
+    approach: np.ndarray
+    rebound: np.ndarray
+    loss: np.ndarray
+    impulse: np.ndarray
+    peak_force: np.ndarray
+    kind: np.ndarray
+    stop: np.ndarray
+    deviations_start: np.ndarray
+    deviations_end: np.ndarray
+
+    def __len__(self) -> int:
+        return int(self.clock.size)
+
+    @staticmethod
+    def of_states(
+        oscillator: ImpactOscillator, *, times: np.ndarray, states: np.ndarray, **numbers: np.ndarray
+    ) -> Impacts:
+        """Touches that another program has found; `numbers` are approach to stop of the list above.
+
+        Without impulse or peak force these are NaN, and without numbers of the stops these are 0.
+
+        `times` [s] has the shape (2, n_impacts), and the modal states (q, q') have (2, n_impacts, 2,
+        n_modes): first the touches, then the releases.
+        """
+        count = times.shape[1]
+        unknown = dict.fromkeys(("impulse", "peak_force"), np.full(count, np.nan))
+        unknown["stop"] = np.zeros(count, dtype=np.int64)
+        given, valid = ", ".join(sorted(numbers.keys() - unknown.keys())), "approach, kind, loss, rebound"
+        require(given == valid, f"numbers has {given or 'no entries'}; it must have {valid}")
+        period, clock = split_time(times[0], oscillator.period)
+        end_clock, motion = times[1] - period * oscillator.period, oscillator.numbers()
+        before, after = states - steady_states(motion, np.array([clock, end_clock]) % motion.period)
+        return Impacts(
+            oscillator=oscillator,
+            period=period,
+            clock=clock,
+            end_clock=end_clock,
+            deviations_start=before,
+            deviations_end=after,
+            **(unknown | numbers),
+        )
+
+    def write_csv(self, path: str | Path) -> None:
+        """Write one line a touch; the first line names the columns and their units."""
+        rows = zip(*(getattr(self, name).tolist() for name in CSV), strict=True)
+        lines = [",".join(f"{name} [{unit}]" for name, unit in CSV.items())]
+        lines += [",".join(map(repr, row)) for row in rows]
+        Path(path).write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+    @cached_property
+    def start(self) -> np.ndarray:
+        """Times of the first touch [s], shape (n_impacts,)."""
+        return self.period * self.oscillator.period + self.clock
+
+    @cached_property
+    def end(self) -> np.ndarray:
+        """Times of the release [s], shape (n_impacts,)."""
+        return self.period * self.oscillator.period + self.end_clock
+
+    @cached_property
+    def duration(self) -> np.ndarray:
+        """Lengths of the touches [s], shape (n_impacts,): 0 under Newton's law, NaN for one still closed."""
+        return self.end_clock - self.clock
+
+    @cached_property
+    def _steady(self) -> tuple[tuple[np.ndarray, np.ndarray], ...]:
+        """Steady displacements and velocities at `start`, and at `end`."""
+        motion = self.oscillator.numbers()
+        return tuple(steady_motion(motion, np.fmod(at, motion.period)) for at in (self.clock, self.end_clock))
+
+    @cached_property
+    def displacement_start(self) -> np.ndarray:
+        """Modal displacements just before the touch [m kg^0.5], shape (n_impacts, n_modes)."""
+        return self._steady[0][0] + self.deviations_start[:, 0]
+
+    @cached_property
+    def velocity_start(self) -> np.ndarray:
+        """Modal velocities just before the touch [m kg^0.5 / s], shape (n_impacts, n_modes)."""
+        return self._steady[0][1] + self.deviations_start[:, 1]
+
+    @cached_property
+    def displacement_end(self) -> np.ndarray:
+        """Modal displacements just after the release [m kg^0.5], shape (n_impacts, n_modes)."""
+        return self._steady[1][0] + self.deviations_end[:, 0]
+
+    @cached_property
+    def velocity_end(self) -> np.ndarray:
+        """Modal velocities just after the release [m kg^0.5 / s], shape (n_impacts, n_modes)."""
+        return self._steady[1][1] + self.deviations_end[:, 1]
+
+
+def steady_states(motion: Motion, clock: float | np.ndarray) -> np.ndarray:
+    """States (q_s, q_s') of the steady motion at times `clock` since a strobe, shape (..., 2, n_modes)."""
+    return np.stack(steady_motion(motion, clock), axis=-2)
+
+
+def deviations(motion: Motion, time: float, q: np.ndarray, q_rate: np.ndarray) -> np.ndarray:
+    """Deviations (u, v) of the modal state (q, q') from the steady motion at a time, shape (2, n_modes)."""
+    return np.array([q, q_rate]) - steady_states(motion, math.fmod(time, motion.period))
