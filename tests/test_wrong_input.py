@@ -71,7 +71,7 @@ NO_ENTRIES = {
     "beam": "Damping InvalidType InvalidValue Refusal Support SuspiciousValue suspect "
     "solid_spring write_frames write_mode_motion write_modes",  # these: tests/beam/test_paraview_files.py
     "contact": "BranchEnded Chatter ContactError ContactLaw ContactTooStiff Diverged ImpactKind NoDerivative "
-    "NotPeriodic Regime StepTooLarge StrobedMap UnresolvedCrossing",
+    "NotPeriodic Regime StepTooLarge StrobedMap TouchedAtOnce UnresolvedCrossing",
     "orbits": "Family MaximalFamily Orbit",  # the second is in the table of contact
     "integrators": "Exact Integrator",  # the first takes no numbers
 }

@@ -50,6 +50,8 @@ def at(displacement: float, regime: Regime = Regime.OUTSIDE, time: float = 0.0) 
 OFF_STROBE = told(at(0.0, time=1e-3), "time of the state is 0.001 s")
 THREE_MODES = told(contact.State.rest(3), "displacement of the state has 3 modes")
 LOADED = told(dataclasses.replace(EQ_1, load=np.array([1.0])), "load is given")
+TWO = dataclasses.replace(EQ_1, stops=(EQ_1.stop, dataclasses.replace(EQ_1.stop, side=-1)))
+TWO_STOPS = told(TWO, "stops has 2 entries")
 UNDRIVEN = told(dataclasses.replace(EQ_1, drive=None), "drive is None")
 FINAL = (
     beam.ModalChange,
@@ -84,7 +86,8 @@ CONTACT = (
     of(contact.HarmonicDrive, dict(frequency=22.2, amplitude=1e-3),
        kind=dict(frequency="22.2 Hz"), value=dict(frequency=0.0, amplitude=-1e-3)),
     of(contact.Stop, dict(gap=0.0107, law=contact.NewtonRestitution(local_restitution=0.1)),
-       kind=dict(gap="10.7 mm", law=each(None, 0.1, "newton", contact.HertzContact)), value=dict(gap=-0.01)),
+       kind=dict(gap="10.7 mm", law=each(None, 0.1, "newton", contact.HertzContact), at=each(3, ("a", 1))),
+       value=dict(gap=-0.01, side=each(0, 2, "up"), at=("tip", "tip"))),
     of(contact.NewtonRestitution, dict(local_restitution=0.1),
        kind=dict(local_restitution=each("0.1", None, [[0, 1], [0.1]],
                                         told(lambda v: "soft", "m/s is 'soft'"))),
@@ -147,6 +150,13 @@ CONTACT = (
        kind=dict(model=None, stop=0.0107, drive=22.2, load=["a"]),
        value=dict(stop=told(dataclasses.replace(HERTZ.oscillator.stop, gap=0.0), "gap is 0.0 m"),
                   load=[1.0, 2.0])),
+    of(contact.ImpactOscillator, lambda: dict(model=EQ_1.model, stops=TWO.stops),
+       name="ImpactOscillator, stops", kind=dict(stops=each(EQ_1.stop, [0.1])),
+       value=dict(stop=told(EQ_1.stop, "stop and stops are both given"),
+                  stops=each(told([], "at least one Stop"), told(None, "stop is missing"), told(2 * [EQ_1.stop], "lie at one place"),
+                             told([dataclasses.replace(EQ_1.stop, gap=0.0, side=x) for x in (1, -1)],
+                                  "from both sides"),
+                             told([dataclasses.replace(EQ_1.stop, at="nose")], "at is 'nose'")))),
     of(lambda excess: EQ_1.with_excess(excess), dict(excess=1e-3), name="ImpactOscillator.with_excess",
        kind=dict(excess="0.1 %"), value=dict(excess=each(-1.0, NAN))),
     of(lambda amplitude: EQ_1.with_amplitude(amplitude), dict(amplitude=1e-3),
@@ -157,7 +167,7 @@ CONTACT = (
     of(contact.State, START | dict(time=0.0, regime=0, wait=0.0, rebound=0.0),
        kind=dict(displacement="rest"), value=dict(displacement=each([], [NAN]),
                   velocity=each([0.0, 1.0], told([[0.0]], "velocity of the state")),
-                  regime=each(7, -1, 5, 17), time=NAN)),
+                  regime=each(7, -1, 5, 17), time=NAN, stop=each(-1, 0.5))),
     of(contact.State.rest, dict(n_modes=2),
        kind=dict(n_modes="two"), value=dict(n_modes=each(0, 1.5))),
     of(contact.simulate, lambda c: dict(oscillator=c.driven, state=c.state, periods=5,
@@ -176,7 +186,8 @@ CONTACT = (
                   periods=told(3, "duration and periods"),
                   times=each(told([0.2, NAN], "times holds nan s"), told([[0.2]], "times has shape"),
                              told([0.5, 1.1], "times run from"), told([-0.1, 0.5], "times run from")))),
-    of(contact.StroboscopicMap, lambda: dict(oscillator=EQ_1), kind=dict(oscillator=3)),
+    of(contact.StroboscopicMap, lambda: dict(oscillator=EQ_1), kind=dict(oscillator=3),
+       value=dict(oscillator=TWO_STOPS)),
     of(MAP.at, lambda c: dict(self=c.strobed, excess=0.1), over="motion", value=dict(excess=-2.0)),
     of(MAP.steady, lambda c: dict(self=c.strobed), over="motion"),
     of(MAP.orbit, lambda c: dict(self=c.strobed, state=c.state, count=20), over="starts",
@@ -211,7 +222,7 @@ CONTACT = (
        value=dict(omega=-154.0, delay=-1e-3, restitution=NAN)),
     of(contact.NordmarkMap.from_oscillator, lambda: dict(oscillator=EQ_1),
        kind=dict(oscillator=each(3, told(HERTZ.oscillator, "law of the stop is HertzContact"))),
-       value=dict(oscillator=UNDRIVEN)),
+       value=dict(oscillator=each(UNDRIVEN, TWO_STOPS))),
     of(lambda state, rho, count: nordmark().iterate(state, rho, count),
        dict(state=[0.0, 0.0], rho=0.01, count=3), name="NordmarkMap.iterate",
        kind=dict(rho="0.01"), value=dict(state=each([0.0], [NAN, 0.0]), count=-1)),
@@ -228,7 +239,7 @@ CONTACT = (
        lambda c: dict(trajectory=contact.simulate(c.driven, c.state, periods=5), unfinished="drop"),
        over="starts", kind=dict(trajectory=each(None, [0.1])), value=dict(unfinished="keep")),
     of(contact.before_collision, lambda: dict(oscillator=EQ_1),
-       kind=dict(oscillator=each(None, "beam")), value=dict(oscillator=UNDRIVEN)),
+       kind=dict(oscillator=each(None, "beam")), value=dict(oscillator=each(UNDRIVEN, TWO_STOPS))),
     of(contact.first_collision, lambda c: dict(oscillator=c.driven, state=c.state, periods=5), over="starts",
        kind=dict(oscillator=3, state="rest"),
        value=dict(periods=0, oscillator=told(EQ_1.with_excess(-0.5), "periods is 5"))),
@@ -240,7 +251,7 @@ CONTACT = (
        name="MaximalFamily.from_oscillator, refused",
        kind=dict(oscillator=None),
        value=dict(period=0, restitution=told(-0.1, "restitution is -0.1"),
-                  oscillator=each(UNDRIVEN, LOADED))),
+                  oscillator=each(UNDRIVEN, LOADED, TWO_STOPS))),
     of(lambda period, speed, rho, excess: (
            contact.MapFamily(nordmark(), period).orbit(speed),
            contact.MapFamily(nordmark(), period).at_rho(rho),

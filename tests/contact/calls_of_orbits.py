@@ -4,7 +4,7 @@ import dataclasses
 
 import numpy as np
 from calls_of_beam import INF, NAN, each, of, told
-from calls_of_contact import EQ_1, LOADED, OFF_STROBE, THREE_MODES, UNDRIVEN, at, nordmark
+from calls_of_contact import EQ_1, LOADED, OFF_STROBE, THREE_MODES, TWO_STOPS, UNDRIVEN, at, nordmark
 from cases_of_calls import GAP, HERTZ, NEWTON
 
 import contact
@@ -48,7 +48,7 @@ DERIVATIVES = {"orbit_derivatives": orbits.orbit_derivatives, "excess_derivative
 # fmt: off
 ORBITS = (
     of(orbits.KickFamily, lambda: dict(oscillator=EQ_1, period=5),
-       kind=dict(oscillator=None), value=dict(period=each(0, 2.5), oscillator=each(LOADED, IDLE))),
+       kind=dict(oscillator=None), value=dict(period=each(0, 2.5), oscillator=each(LOADED, IDLE, TWO_STOPS))),
     of(orbits.KickFamily.fold, lambda c: dict(self=c.kicks), over="family",
        kind=dict(speeds="all"), value=dict(speeds=each((0.5, 0.01), (0.0, 1.0)))),
     of(orbits.KickFamily.orbits, lambda c: dict(self=c.kicks, excess=0.01), over="family"),
@@ -60,7 +60,7 @@ ORBITS = (
          name=f"KickFamily.{name}", over="speeds") for name, given in KICK_CALLS.items()),
     of(orbits.Shooting, lambda: dict(oscillator=HERTZ.oscillator, period=5),
        kind=dict(oscillator="eq_1"),
-       value=dict(period=each(0, 1.5), impacts=0, oscillator=each(UNDRIVEN, IDLE))),
+       value=dict(period=each(0, 1.5), impacts=0, oscillator=each(UNDRIVEN, IDLE, TWO_STOPS))),
     of(orbits.Shooting.orbit, lambda c: dict(self=c.family, speed=c.speed),
        name="Shooting.orbit", over="speeds"),
     of(orbits.Shooting.at_speed, lambda c: dict(self=c.family, speed=c.speed),
@@ -109,7 +109,7 @@ ORBITS = (
     of(orbits.motion_derivatives, lambda c: dict(
            oscillator=c.driven, state=c.state, changes=[CHANGE], periods=3, times=np.linspace(0.01, 0.1, 5)),
        over="starts", kind=dict(oscillator=None, state=[0.0], changes=each(CHANGE, [3.0])),
-       value=dict(oscillator=UNDRIVEN, state=told(at(GAP, Regime.CONTACT), "regime"))),
+       value=dict(oscillator=each(UNDRIVEN, TWO_STOPS), state=told(at(GAP, Regime.CONTACT), "regime"))),
     *(of(orbits.settle, lambda c, prove=prove: dict(
              strobed=c.strobed, state=c.state, most_cycles=256, largest_period=64, tolerance=1e-9,
              prove=prove),
@@ -137,7 +137,8 @@ ORBITS = (
        kind=dict(points="p"), value=dict(impacts=[0], points=each(
            [0.0], np.zeros((20, 0)), told([[0.0]] * 3, "points has 3 strobes")))),
     of(orbits.AmplitudeScan, lambda: dict(oscillator=EQ_1, most_cycles=128),
-       kind=dict(oscillator=each(None, nordmark())), value=dict(oscillator=UNDRIVEN, most_cycles=127)),
+       kind=dict(oscillator=each(None, nordmark())),
+       value=dict(oscillator=each(UNDRIVEN, TWO_STOPS), most_cycles=127)),
     of(lambda **given: orbits.AmplitudeScan(oscillator=EQ_1, most_cycles=128)(**given),
        dict(frequency=22.2, excesses=[-1e-3]), name="AmplitudeScan, a column", kind=dict(excesses="all"),
        value=dict(frequency=0.0, excesses=told([1e-3, 0.0], "excesses must be"))),
