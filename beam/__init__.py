@@ -49,9 +49,10 @@ if TYPE_CHECKING:
         tip_mass_change,
         with_tip_mass,
     )
-    from .modal_model import ModalModel, Point, single_mode
+    from .modal_model import ModalModel, single_mode
     from .modes import Modes, ShapesAlong, natural_modes
     from .parameters import InvalidType, InvalidValue, Refusal, SuspiciousValue, suspect
+    from .point import Point
     from .reduction import reduce
     from .section import Layer, StripSection
     from .spring import LeafSpring, Readout, Support, Tip

@@ -21,7 +21,7 @@ from scipy.sparse.linalg import splu
 
 from .parameters import Array, require, require_array, require_kind
 from .pieces import meshed_pieces, motion_at, shared_elements, tie_matrix, tied_matrices
-from .spring import HELD, LeafSpring, Tip
+from .spring import HELD, LeafSpring, Readout, Tip
 from .strip_element import PieceMesh
 
 
@@ -41,7 +41,7 @@ class Discretization:
     tip : ndarray, shape (n_dofs,)
         The displacement of the tip in the drive direction is ``tip @ x`` [m].
     readouts : dict of str to ndarray, shape (n_dofs,)
-        The value of a read-out is its row times x [m or rad].
+        The value of a read-out or of a point of the spring is its row times x [m or rad].
     pieces : tuple of PieceMesh
         Meshed pieces of the centreline.
     ties : sparse array, shape (unknowns of all pieces, n_dofs)
@@ -72,11 +72,13 @@ class Discretization:
         """Number of degrees of freedom."""
         return self.tip.size
 
-    def static_compliance(self) -> float | None:
-        """Tip displacement per unit static tip force [m/N]; None if the supports leave a rigid motion."""
+    def static_compliance(self, point: str | None = None) -> float | None:
+        """Displacement of the tip, or of a named point, per unit static force there [m/N]; None if the
+        supports leave a rigid motion."""
         if self.spring.rigid_motions:
             return None
-        return float(self.tip @ splu(self.stiffness.tocsc()).solve(self.tip))
+        row = self.tip if point is None else self.readouts[point]
+        return float(row @ splu(self.stiffness.tocsc()).solve(row))
 
     def strain_energies(self, shapes: Array) -> Array:
         """Return the strain energies of `shapes`, computed from their strains rather than from K.
@@ -128,13 +130,14 @@ def assemble(
     line, drive = spring.centreline, np.array([*spring.drive, 0.0])
     pieces = meshed_pieces(PieceMesh, spring, default_elements(spring) if elements is None else elements)
     held = np.array([HELD[support][:3] for support in spring.supports])
-    ties = tie_matrix(pieces, held, line.is_straight and not shortening)
+    between = {s: np.array(HELD[support][:3]) for s, support in spring.between.items()}
+    ties = tie_matrix(pieces, held, line.is_straight and not shortening, between)
     stiffness, mass, loss = tied_matrices(pieces, ties)
     motion = motion_at(line, pieces, ties, spring.tip_at)
     tip, matrices = drive @ motion[:3], (stiffness, mass + tip_inertia(spring.tip, motion), loss)
     stiffness, mass, loss = (csr_array(0.5 * (matrix + matrix.T)) for matrix in matrices)
-    readouts = {}
-    for name, readout in spring.readouts.items():
+    readouts, points = {}, {name: Readout(at=at) for name, at in spring.point_at.items()}
+    for name, readout in {**spring.readouts, **points}.items():
         motion = motion_at(line, pieces, ties, readout.at)
         readouts[name] = motion[5] if readout.quantity == "rotation" else drive @ motion[:3]
     loads = np.concatenate([piece.base_load(line, drive) for piece in pieces])

@@ -154,6 +154,22 @@ class Centreline:
         corners = np.array([*self.start, 0.0]) + np.concatenate((np.zeros((1, 3)), np.cumsum(chords, axis=0)))
         return corners[at] + _chord(s - ends[at], self.curvatures[at], self.angle(ends[:-1])[at])
 
+    def nearest(self, point: ArrayLike) -> tuple[float, float]:
+        """Return the arc length of the place nearest to a `point` (x, y), and its distance from there [m].
+
+        A piece of curvature k reaches the direction of the point from its centre after the angle k d.
+        """
+        given = require_array("point", point, "m", shape=(2,), words="a point (x, y), two finite numbers")
+        places = [*self.joints.tolist()]
+        for piece, start in zip(self.pieces, self.joints[:-1].tolist(), strict=True):
+            t, n = (vector[:2] for vector in self.frame(start))
+            offset, k = given - self.points(start)[:2], piece.curvature
+            d = t @ offset if k == 0.0 else np.arctan2(k * (t @ offset), 1.0 - k * (n @ offset)) / k
+            d = d % (2.0 * np.pi / abs(k)) if k != 0.0 else d
+            places += [start + float(d)] if 0.0 < d < piece.length else []
+        away = np.hypot(*(self.points(np.array(places))[:, :2] - given).T)
+        return places[int(np.argmin(away))], float(away.min())
+
 
 def _chord(d: Array, curvature: Array, heading: Array) -> Array:
     """Return the chord [m], shape (..., 3), of an arc of length d that starts at the angle `heading`."""

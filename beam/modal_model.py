@@ -36,9 +36,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from .parameters import final, require, require_array, require_kind, require_whole, require_within, suspect
+from .parameters import final, require, require_kind, require_whole, require_within, shown, suspect
+from .point import Point, check_statics, row_of
 
 UNITS = {"omega": "rad/s", "decay_rate": "1/s", "phi": "kg^(-1/2)", "participation": "kg^(1/2)"}
 """Units of the arrays of a modal model."""
@@ -49,31 +50,6 @@ GREATEST_RATIO = 0.5
 """Largest damping ratio of the lowest mode without a warning; damping alloys reach 0.1."""
 STILL = 1e-9
 """Frequency that replaces zero where modes are compared [rad/s]; rounding of phi over it is still small."""
-
-
-@final
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Point:
-    """A place of a structure, as its modes and its statics see it.
-
-    Parameters
-    ----------
-    row : array_like, shape (n_modes,)
-        Values of the mass-normalised shapes there [kg^(-1/2), rotations kg^(-1/2) m^(-1)]. The motion of the
-        place, relative to the base, is ``row @ q``.
-    static_compliance : float, optional
-        Displacement per unit static force at the place, all modes of the structure included [m/N].
-    mass : float, optional
-        Lumped mass at the place [kg], the limit of 1 / sum row^2.
-    """
-
-    row: NDArray[np.float64]
-    static_compliance: float | None = None
-    mass: float | None = None
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "row", _row("row", self.row, "kg^(-1/2)"))
-        _check_statics(self, static_compliance="m/N", mass="kg")
 
 
 @final
@@ -116,7 +92,7 @@ class ModalModel:
     dimensionless: bool = False
 
     def __post_init__(self) -> None:
-        rows = {name: _row(name, getattr(self, name), unit) for name, unit in UNITS.items()}
+        rows = {name: row_of(name, getattr(self, name), unit) for name, unit in UNITS.items()}
         omega = rows["omega"]
         for name in ("omega", "decay_rate"):
             least = rows[name].min()
@@ -131,7 +107,7 @@ class ModalModel:
         for name, row in rows.items():
             words = f"it must have the shape {omega.shape} of omega"
             require(row.shape == omega.shape, name, f"has shape {row.shape}; {words}")
-        _check_statics(self, static_compliance="m/N", tip_mass="kg")
+        check_statics(self, static_compliance="m/N", tip_mass="kg")
         tip = Point(row=self.phi, static_compliance=self.static_compliance, mass=self.tip_mass)
         vars(self).update(points=points | {"tip": tip})
         if old is not None and any(abs(a) != abs(b) for a, b in zip(old.row, tip.row, strict=False)):
@@ -175,6 +151,19 @@ class ModalModel:
         count = require_whole("count", count, "modes", high=self.n_modes, why=", the modes of the model")
         points = {name: replace(point, row=point.row[:count]) for name, point in self.points.items()}
         return replace(self, **{name: getattr(self, name)[:count] for name in UNITS}, points=points)
+
+    def load_of(self, forces: Mapping[str, float]) -> NDArray[np.float64]:
+        """Return the modal load of constant `forces` [N] on named points, shape (n_modes,) [N kg^(-1/2)].
+
+        Each acts along the motion of its point, as ``ImpactOscillator(load=...)`` takes it.
+        """
+        load = np.zeros(self.n_modes)
+        for name, force in require_kind("forces", forces, Mapping, "a mapping of points to forces").items():
+            require(
+                name in self.points, "forces", f"names {shown(name)}; points are {', '.join(self.points)}"
+            )
+            load += require_within(f"forces[{name!r}]", force, "N") * self.points[name].row
+        return load
 
     def with_residual_mode(self) -> ModalModel:
         """Return the model with one more mode, which replaces all modes left out.
@@ -258,20 +247,6 @@ class ModalModel:
             participation=mass * shapes[n],
             dimensionless=self.dimensionless,
         )
-
-
-def _check_statics(owner: Point | ModalModel, **units: str) -> None:
-    """Store these numbers of the owner as floats; a negative one is refused, None stays."""
-    for name, unit in units.items():
-        if (value := getattr(owner, name)) is not None:
-            object.__setattr__(owner, name, require_within(name, value, unit, low=0))
-
-
-def _row(name: str, values: ArrayLike, unit: str) -> NDArray[np.float64]:
-    """Return a read-only float copy of shape (n,), n >= 1, all finite."""
-    row = require_array(name, values, unit, dimensions=1, words="one row of numbers")
-    require(row.size > 0, name, f"has shape {row.shape}; it must be one row of at least one mode [{unit}]")
-    return row
 
 
 def single_mode(*, free_period: float, decay_rate: float) -> ModalModel:

@@ -78,9 +78,9 @@ class Modes:
     phi, participation : ndarray, shape (n_modes,)
         phi_k [kg^(-1/2)] and Gamma_k [kg^(1/2)]; exactly 0 in uncoupled modes.
     coupled : ndarray of bool, shape (n_modes,)
-        Whether the drive or the stop can excite the mode.
+        Whether the drive, the tip or a point of the spring can excite the mode.
     readouts : dict of str to ndarray, shape (n_modes,)
-        Values at the read-outs [kg^(-1/2), rotations kg^(-1/2) m^(-1)].
+        Values at the read-outs and at the points of the spring [kg^(-1/2), rotations kg^(-1/2) m^(-1)].
     """
 
     discretization: Discretization
@@ -156,6 +156,8 @@ def natural_modes(discretization: Discretization, count: int) -> Modes:
     phi, participation = discretization.tip @ shapes, discretization.base_load @ shapes
     moves = np.abs(phi) * total > COUPLING_TOLERANCE
     driven = np.abs(participation) / total > COUPLING_TOLERANCE
+    readouts = {name: row @ shapes for name, row in discretization.readouts.items()}
+    pushed = [np.abs(readouts[name]) * total > COUPLING_TOLERANCE for name in spring.points]
     leading = np.where(moves, phi, np.where(driven, participation, _first_deflection(discretization, shapes)))
     sign = np.where(leading < 0.0, -1.0, 1.0)
     shapes = shapes * sign
@@ -165,8 +167,8 @@ def natural_modes(discretization: Discretization, count: int) -> Modes:
         shapes=shapes,
         phi=np.where(moves, phi * sign, 0.0),
         participation=np.where(driven, participation * sign, 0.0),
-        coupled=moves | driven,
-        readouts={name: row @ shapes for name, row in discretization.readouts.items()},
+        coupled=np.any([moves, driven, *pushed], axis=0),
+        readouts={name: row * sign for name, row in readouts.items()},
     )
 
 

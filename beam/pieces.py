@@ -13,7 +13,7 @@ of the coordinate.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, ClassVar, TypeVar
@@ -152,21 +152,29 @@ def shared_elements(line: Centreline, straight: int, half_turn: int) -> tuple[in
 
 
 def meshed_pieces(kind: Callable[..., P], spring: Any, elements: int | Sequence[int]) -> tuple[P, ...]:
-    """Return the pieces of a spring, meshed uniformly but for the node that is moved to the tip."""
+    """Return the pieces of a spring, meshed uniformly but for the nodes that are moved to the tip and to
+    supports between the ends."""
     line, found = spring.centreline, []
     counts = element_counts(elements, len(line.pieces))
     for i, (piece, start) in enumerate(zip(line.pieces, line.joints[:-1].tolist(), strict=True)):
-        tip = (spring.tip_at - start) / piece.length
-        inside = 1e-9 < tip < 1.0 - 1e-9
-        x = np.linspace(0.0, 1.0, max(counts[i], 1 + inside) + 1)
-        if inside:
-            x[1 + np.argmin(np.abs(x[1:-1] - tip))] = tip
+        places = [(s - start) / piece.length for s in (spring.tip_at, *getattr(spring, "between", ()))]
+        inside = [place for place in places if 1e-9 < place < 1.0 - 1e-9]
+        x = np.linspace(0.0, 1.0, max(counts[i], 1 + len(inside)) + 1)
+        for place in sorted(inside):
+            away = np.where(np.isin(x, [0.0, 1.0, *inside]), np.inf, np.abs(x - place))
+            x[np.argmin(away)] = place if place not in x else x[np.argmin(away)]
+        x.sort()
         nodes, section = piece.length * x, spring.sections[i]
         found.append(kind(start=start, nodes=nodes, curvature=piece.curvature, section=section))
     return tuple(found)
 
 
-def tie_matrix(pieces: Sequence[Piece], held: NDArray[np.bool_], straight: bool = False) -> csr_array:
+def tie_matrix(
+    pieces: Sequence[Piece],
+    held: NDArray[np.bool_],
+    straight: bool = False,
+    between: Mapping[float, NDArray[np.bool_]] | None = None,
+) -> csr_array:
     """Return T, which joins the pieces and builds in the supports.
 
     Parameters
@@ -176,6 +184,8 @@ def tie_matrix(pieces: Sequence[Piece], held: NDArray[np.bool_], straight: bool 
         Whether the support at each end holds each unknown of a node.
     straight : bool
         Whether to leave out u, the first unknown of each node and the inner ones, along a straight strip.
+    between : mapping of float to ndarray of bool, shape (nodal,), optional
+        Which unknowns the node at an arc length [m] has held.
     """
     begins = np.concatenate(([0], np.cumsum([piece.size for piece in pieces])))
     first, unknown = begins[:-1], np.arange(pieces[0].nodal)
@@ -185,6 +195,12 @@ def tie_matrix(pieces: Sequence[Piece], held: NDArray[np.bool_], straight: bool 
     free[first[1:, None] + unknown] = False  # follow from the piece before
     free[first[0] + unknown] &= ~held[0]
     free[last[-1] + unknown] &= ~held[1]
+    for s, kept in (between or {}).items():
+        which = max(
+            i for i, piece in enumerate(pieces) if i == 0 or piece.start < s
+        )  # at a joint, the one before
+        node = int(np.argmin(np.abs(pieces[which].start + pieces[which].nodes - s)))
+        free[first[which] + unknown.size * node + unknown] &= ~kept
     if straight:
         for start, inner, end in zip(first, first + nodal, begins[1:], strict=True):
             free[start : inner : unknown.size] = free[inner:end] = False

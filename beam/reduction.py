@@ -13,7 +13,7 @@ from .parameters import require, require_kind, require_whole
 def reduce(modes: Modes, damping: Damping, count: int | None = None) -> ModalModel:
     """Return the modal model of a discretized spring, with the static compliance of the whole spring [m/N].
 
-    Modes that neither the drive nor a force on the tip can excite (phi = participation = 0) are left out.
+    Modes that neither the drive nor a force on the tip or on a point of the spring can excite are left out.
 
     Parameters
     ----------
@@ -35,13 +35,22 @@ def reduce(modes: Modes, damping: Damping, count: int | None = None) -> ModalMod
     wanted = keep.size if count is None else require_whole("count", count, "modes", low=0)
     words = f"it must lie between 1 and the {keep.size} coupled modes among the {modes.omega.size} computed"
     require(1 <= wanted <= keep.size, "count", f"is {wanted} modes; {words} (natural_modes computes more)")
-    keep = keep[:wanted]
+    keep, found = keep[:wanted], modes.discretization
+    spring, points = found.spring, dict[str, Point]()
+    for name, row in modes.readouts.items():
+        own = name in spring.points
+        at_tip = own and abs(spring.point_at[name] - spring.tip_at) <= 1e-9 * spring.centreline.length
+        points[name] = Point(
+            row=row[keep],
+            static_compliance=found.static_compliance(name) if own else None,
+            mass=(spring.tip.mass if at_tip else 0.0) if own else None,
+        )
     return ModalModel(
         omega=modes.omega[keep],
         decay_rate=damping.decay_rates(modes)[keep],
         phi=modes.phi[keep],
         participation=modes.participation[keep],
-        static_compliance=modes.discretization.static_compliance(),
-        tip_mass=modes.discretization.spring.tip.mass,
-        points={name: Point(row=row[keep]) for name, row in modes.readouts.items()},
+        static_compliance=found.static_compliance(),
+        tip_mass=spring.tip.mass,
+        points=points,
     )

@@ -1,8 +1,9 @@
-"""A leaf spring on a moving base: centreline, sections, supports, tip, drive direction and read-out points.
+"""A leaf spring on a moving base: centreline, sections, supports, tip, drive direction and points by name.
 
-Supports join the ends of the centreline to the base. u, w [m] are the displacements relative to the base
-along the tangent and the normal, theta [rad] is the rotation of the strip about z. Out of the plane, in
-`space`, v [m] is the displacement along z and phi [rad] the rotation about the tangent. A support holds
+Supports join the ends of the centreline, and places between them, to the base. u, w [m] are the displacements
+relative to the base along the tangent and the normal, theta [rad] is the rotation of the strip about z. Out
+of the plane, in `space`, v [m] is the displacement along z and phi [rad] the rotation about the tangent. A
+support holds
 
     clamped   u = w = theta = 0        and out of the plane   v = v' = phi = phi' = 0
     pinned    u = w = 0                                       v = phi = 0
@@ -21,6 +22,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any, Literal
 
 import numpy as np
@@ -137,12 +139,18 @@ class LeafSpring:
         Direction (x, y) of the base motion [1]; stored as a unit vector.
     readouts : mapping of str to Readout
         Points where the motion is measured, by name.
+    points : mapping of str to a float or a tuple of two floats
+        Further places that a stop or a force can act on, by name: their arc lengths, or their coordinates
+        (x, y) on the centreline [m].  They move, like the tip, in the drive direction.
+    between : mapping of float to a support
+        Supports between the ends, by their arc lengths [m].
 
     Raises
     ------
     ValueError
         For a wrong number of sections, an unknown support, an arc length off the centreline, a tip that a
-        support holds, a drive of length 0, or a bend tighter than half the thickness.
+        support holds, a drive of length 0, a bend tighter than half the thickness, or a point off the
+        centreline.
 
     Warns
     -----
@@ -158,6 +166,8 @@ class LeafSpring:
     tip_at: float
     drive: tuple[float, float] = (0.0, 1.0)
     readouts: Mapping[str, Readout] = field(default_factory=dict)
+    points: Mapping[str, float | tuple[float, float]] = field(default_factory=dict)
+    between: Mapping[float, Support] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         check_strip(self, StripSection, 2)
@@ -166,7 +176,19 @@ class LeafSpring:
         for name, readout in self.readouts.items():
             require_kind(f"readouts[{name!r}]", readout, Readout, "a Readout")
             require_within(f"readouts[{name!r}]", readout.at, "m", low=0, high=end)
-        object.__setattr__(self, "readouts", dict(self.readouts))
+        require_kind("between", self.between, Mapping, "a mapping of arc lengths to supports")
+        for at, support in self.between.items():
+            words, inner = "between", self.centreline.length * (1.0 - 1e-6)
+            require_within(words, at, "m", above=1e-6 * inner, below=inner)
+            two_supports([support, support])
+        require_kind("points", self.points, Mapping, "a mapping of names to places")
+        names = dict(readouts=dict(self.readouts), points=dict(self.points), between=dict(self.between))
+        vars(self).update(names)
+        for name, s in {"tip_at": self.tip_at, **self.point_at}.items():
+            for place, support in self.places:
+                held = HELD[support][0] and HELD[support][1] and abs(s - place) <= 1e-9 * end
+                words = f"is {s} m, where the strip is {support}; it must be able to move"
+                require(not held, name if name == "tip_at" else f"points[{name!r}]", words)
         for section, piece in zip(self.sections, self.centreline.pieces, strict=True):
             half, r = 0.5 * section.total_thickness, getattr(piece, "radius", math.inf)
             require(r > half, "radius", f"is {r} m; it must be above half the thickness, {half:g} m")
@@ -195,6 +217,27 @@ class LeafSpring:
         if width > arm:
             suspect(f"width is {width:g} m, more than {reach}; it is a plate rather than a strip")
 
+    @cached_property
+    def point_at(self) -> dict[str, float]:
+        """Arc lengths of `points` by name [m]."""
+        found, line, length = dict[str, float](), self.centreline, self.centreline.length
+        for name, place in self.points.items():
+            field, taken = f"points[{name!r}]", name == "tip" or name in self.readouts
+            require(not taken, field, "has the name of the tip or of a read-out; it must be another one")
+            if not isinstance(place, tuple | list):
+                found[name] = require_within(field, place, "m", low=0, high=length * (1.0 + 1e-12))
+                continue
+            found[name], away = line.nearest(place)
+            words = f"is {shown(place)} m, {away:.3g} m from the centreline; it must lie on it"
+            require(away <= 1e-6 * length, field, words)
+        return found
+
+    @property
+    def places(self) -> list[tuple[float, Support]]:
+        """Arc lengths of all supports [m], and their kinds."""
+        ends = zip((0.0, self.centreline.length), self.supports, strict=True)
+        return [*ends, *self.between.items()]
+
     @property
     def strip_mass(self) -> float:
         """Mass of the strip without the tip [kg]."""
@@ -204,11 +247,11 @@ class LeafSpring:
     @property
     def rigid_motions(self) -> int:
         """Number of motions without strain that the supports allow; 0 if they hold the spring."""
-        ends = np.array([0.0, self.centreline.length])
+        ends = np.array([s for s, _ in self.places])
         points = self.centreline.points(ends)[:, :2] / self.centreline.length
         by_rotation = np.stack([-points[:, 1], points[:, 0]], axis=1)
         rows = []
-        for i, support in enumerate(self.supports):
+        for i, (_, support) in enumerate(self.places):
             t, n = (vectors[i, :2] for vectors in self.centreline.frame(ends))
             at_end = np.array([[*t, t @ by_rotation[i]], [*n, n @ by_rotation[i]], [0.0, 0.0, 1.0]])
             held = np.array(HELD[support][:3])

@@ -1,0 +1,49 @@
+"""A place of a structure, as its modes see it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .parameters import final, require, require_array, require_within
+
+
+@final
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Point:
+    """A place of a structure, as its modes and its statics see it.
+
+    Parameters
+    ----------
+    row : array_like, shape (n_modes,)
+        Values of the mass-normalised shapes there [kg^(-1/2), rotations kg^(-1/2) m^(-1)]. The motion of the
+        place, relative to the base, is ``row @ q``.
+    static_compliance : float, optional
+        Displacement per unit static force at the place, all modes of the structure included [m/N].
+    mass : float, optional
+        Lumped mass at the place [kg], the limit of 1 / sum row^2.
+    """
+
+    row: NDArray[np.float64]
+    static_compliance: float | None = None
+    mass: float | None = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "row", row_of("row", self.row, "kg^(-1/2)"))
+        check_statics(self, static_compliance="m/N", mass="kg")
+
+
+def check_statics(owner: object, **units: str) -> None:
+    """Store these numbers of the owner as floats; a negative one is refused, None stays."""
+    for name, unit in units.items():
+        if (value := getattr(owner, name)) is not None:
+            object.__setattr__(owner, name, require_within(name, value, unit, low=0))
+
+
+def row_of(name: str, values: ArrayLike, unit: str) -> NDArray[np.float64]:
+    """Return a read-only float copy of shape (n,), n >= 1, all finite."""
+    row = require_array(name, values, unit, dimensions=1, words="one row of numbers")
+    require(row.size > 0, name, f"has shape {row.shape}; it must be one row of at least one mode [{unit}]")
+    return row
