@@ -4,7 +4,6 @@ Touches are kept as in ``contact.touch.passage``, and times alike.  A method wit
 strobe throughout, and has its strobes among the samples (``contact.integrators.fixed_step``).
 """
 
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -114,9 +113,11 @@ def grown(recorder: Recorder) -> Recorder:
 
 
 def improve(views: list[Motion], log: np.ndarray, touches: np.ndarray) -> None:
-    """Better the finished log of a run by the laws of its stops."""
+    """Better the stays of a finished log by the laws of their stops, from the touches of the same stop in a
+    row."""
     edges = np.flatnonzero(np.diff(log["stop"], prepend=-1, append=-1))
-    for a, b in pairwise(edges.tolist()):  # touches of one stop in a row
+    for i in np.unique(np.searchsorted(edges, np.flatnonzero(log["kind"] == STAY), side="right")).tolist():
+        a, b = int(edges[i - 1]), int(edges[i])
         seen = views[int(log["stop"][a])]
         TOUCHES[seen.law].improve(seen, log[a:b], touches[a:b])
 
