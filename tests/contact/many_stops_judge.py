@@ -20,6 +20,9 @@ exp, real, exact = (np.frompyfunc(f, 1, 1) for f in (mpmath.exp, lambda x: x.rea
 CHUNK, DOUBLINGS, NUDGE = 256, 2.0 ** -np.arange(20, 0, -1), Exact("1e-22")
 
 
+PLACES = ["tip", "b", "c", ("tip", "b"), ("b", "c")]
+
+
 def numbers(values: list) -> np.ndarray:
     return exact(np.array(values, dtype=object))
 
@@ -240,7 +243,7 @@ def complete(problem: dict) -> dict:
 
 def random_problem(rng: np.random.Generator) -> dict:
     """One to eight modes between one to four stops, whose gaps the motion without them exceeds."""
-    n, places = int(rng.integers(1, 9)), ["tip", "b", "c", ("tip", "b"), ("b", "c")]
+    n = int(rng.integers(1, 9))
     omega = np.append(1.0, np.sort(rng.uniform(1.3, 40.0, n - 1)))
     phi, b, c, gamma = rng.uniform(-1.0, 1.0, (4, n)) * omega**-0.5 + np.eye(1, n)
     problem = {
@@ -257,7 +260,7 @@ def random_problem(rng: np.random.Generator) -> dict:
         "stops": [],
     }
     for _ in range(rng.integers(1, 5)):
-        stop = {"gap": 0.0, "at": places[rng.integers(5)], "side": int(rng.choice((-1, 1)))}
+        stop = {"gap": 0.0, "at": PLACES[rng.integers(len(PLACES))], "side": int(rng.choice((-1, 1)))}
         system = System(problem | {"stops": [stop | {"law": []}]})
         free = Signal(Flow(system, Exact(0), *(numbers(problem[name]) for name in ("q", "v")), None), 0)
         stop["gap"] = rng.uniform(0.1, 0.5) * float(free.samples(np.arange(0.0, 40.0, 0.02))[0].max())
