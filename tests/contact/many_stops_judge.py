@@ -177,12 +177,14 @@ def first_rise(signals: dict, at_zero: tuple, end: Exact) -> list:
 def follow(problem: dict, *, nudge: Exact = ZERO, most: int = 10**6) -> dict:
     """Touches [stop, start, end, approach, rebound], NaN if one has not ended, and the state at the end.
 
-    If a second stop is reached while one is touched the run ends, and `at_once` is the time.
+    If a second stop is reached while one is touched the run ends, and `at_once` is the time.  A `nudge`
+    changes the velocity at the start and at each event, as rounding does.
     """
     system, time, end = System(problem), Exact(0), Exact(problem["duration"])
     q, v = (numbers(problem[name]) for name in ("q", "v"))
-    v, touches, held, pushed, at_zero = v + nudge * system.rows[0], [], None, False, ()
+    touches, held, pushed, at_zero, stop = [], None, False, (), 0
     while len(touches) < most or held is not None:
+        v = v + nudge * system.rows[stop]
         flow = Flow(system, time, q, v, held if pushed else None)
         signals = {("touch", j): Signal(flow, j) for j in range(len(system.rows)) if j != held}
         if held is not None:
@@ -231,7 +233,7 @@ def distance(problem: dict, one: dict, other: dict) -> float:
 
 
 def complete(problem: dict) -> dict:
-    """A problem with its answer, and its amplification: by how much a change of the start grows."""
+    """A problem with its answer, and its amplification: by how much changes of the motion grow."""
     answer = follow(problem)
     if "at_once" not in answer:
         nudge = NUDGE * max(x[3] for x in answer["touches"])
