@@ -174,17 +174,17 @@ def first_rise(signals: dict, at_zero: tuple, end: Exact) -> list:
     return []
 
 
-def follow(problem: dict, *, nudge: Exact = ZERO, most: int = 10**6) -> dict:
+def follow(problem: dict, *, nudge: Exact = ZERO, turn: int = 1, most: int = 10**6) -> dict:
     """Touches [stop, start, end, approach, rebound], NaN if one has not ended, and the state at the end.
 
     If a second stop is reached while one is touched the run ends, and `at_once` is the time.  A `nudge`
-    changes the velocity at the start and at each event, as rounding does.
+    changes the velocity at the start and at each event, as rounding does, with turn = -1 in alternation.
     """
     system, time, end = System(problem), Exact(0), Exact(problem["duration"])
     q, v = (numbers(problem[name]) for name in ("q", "v"))
     touches, held, pushed, at_zero, stop = [], None, False, (), 0
     while len(touches) < most or held is not None:
-        v = v + nudge * system.rows[stop]
+        v, nudge = v + nudge * system.rows[stop], turn * nudge
         flow = Flow(system, time, q, v, held if pushed else None)
         signals = {("touch", j): Signal(flow, j) for j in range(len(system.rows)) if j != held}
         if held is not None:
@@ -218,28 +218,30 @@ def follow(problem: dict, *, nudge: Exact = ZERO, most: int = 10**6) -> dict:
     return {"touches": touches, "q": list(q), "v": list(v)}
 
 
+def size(problem: dict, q: list, v: list) -> Exact:
+    """The root of twice the energy of a state."""
+    return mpmath.norm([*(numbers(problem["omega"]) * numbers(q)), *numbers(v)])
+
+
 def distance(problem: dict, one: dict, other: dict) -> float:
-    """The largest difference of two answers: times by w, speeds over the highest, the end over its energy."""
-    stops, rest = zip(
-        *[([x[0] for x in y["touches"]], [x[1:] for x in y["touches"]]) for y in (one, other)], strict=True
-    )
-    a, b = map(numbers, rest)
-    if stops[0] != stops[1] or np.any((a != a) != (b != b)):
+    """The largest difference of two answers: times by w, speeds over the highest, the end over its size."""
+    if [x[0] for x in one["touches"]] != [x[0] for x in other["touches"]]:
+        return math.inf
+    a, b = (numbers([x[1:] for x in answer["touches"]]) for answer in (one, other))
+    if np.any((a != a) != (b != b)):
         return math.inf
     far = np.where(a == a, abs(a - b), ZERO) * ([Exact(problem["w"])] * 2 + [1 / a[:, 2].max()] * 2)
-    scale = numbers([*problem["omega"], *[1] * len(problem["omega"])])
-    ends = [scale * numbers([*x["q"], *x["v"]]) for x in (one, other)]
-    return float(max(far.max(), (sum((ends[0] - ends[1]) ** 2) / sum(ends[0] ** 2)) ** Exact(0.5)))
+    end = size(problem, *(numbers(one[x]) - numbers(other[x]) for x in "qv"))
+    return float(max(far.max(), end / size(problem, one["q"], one["v"])))
 
 
 def complete(problem: dict) -> dict:
     """A problem with its answer, and its amplification: by how much changes of the motion grow."""
     answer = follow(problem)
     if "at_once" not in answer:
-        nudge = NUDGE * max(x[3] for x in answer["touches"])
-        answer["amplification"] = max(
-            1.0, distance(problem, answer, follow(problem, nudge=nudge)) / float(NUDGE)
-        )
+        nudge = NUDGE * max(size(problem, answer["q"], answer["v"]), *(x[3] for x in answer["touches"]))
+        far = (distance(problem, answer, follow(problem, nudge=nudge, turn=turn)) for turn in (1, -1))
+        answer["amplification"] = max(1.0, max(far) / float(NUDGE))
     return problem | {"answer": answer}
 
 

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from many_stops_judge import PLACES, Exact, distance, follow, judged
+from many_stops_judge import Exact, System, distance, follow, judged, random_problem
 from oscillators import modes_on_stop, newton, slow
-from tip_judge import PLANTED, Real, Signal, judge, random_deviation, random_oscillator, with_gap
+from tip_judge import PLANTED, Real, Signal, judge, with_gap
 
 from beam import ModalModel, Point
 from contact import (
@@ -26,7 +26,7 @@ from contact import (
 )
 from contact.flight.elementary import EPS
 from contact.flight.modal_flow import tip_rounding
-from contact.trajectory import deviations, steady_states
+from contact.trajectory import deviations
 
 PROBLEMS = {one["name"]: one for one in json.loads(Path(__file__).with_name("many_stops.json").read_text())}
 FRESH = int(os.environ.get("MANY_STOPS_FRESH", "40"))
@@ -72,6 +72,7 @@ def check(problem: dict) -> None:
     assert distance(problem, answer, found) <= 1e3 * EPS * answer["amplification"]
 
 
+@pytest.mark.filterwarnings("ignore:frequency of the drive:beam.SuspiciousValue")
 @pytest.mark.parametrize("name", PROBLEMS)
 def test_stored_motions(name):
     check(PROBLEMS[name])
@@ -98,44 +99,38 @@ def test_fresh_motions():
 
 
 def views(rng: np.random.Generator) -> tuple:
-    """A flight before up to four stops: oscillator, start, its length, and how each stop sees it."""
-    motion = random_oscillator(rng, int(rng.integers(1, 9))).motion()
-    omega, decay, n = motion.omega, motion.decay, motion.size
-    rows = dict(zip(("tip", "b", "c"), rng.normal(size=(3, n)) * 5 + 2, strict=True))
-    gamma, drive = rng.normal(size=n) * 0.1, (float(rng.uniform(14, 19)), 2e-3)
-    time = float(rng.uniform(0.0, 0.5)) / drive[0]
-    u, v = random_deviation(rng, motion, ringing=True)
-    whole = modes_on_stop(omega, decay, rows["tip"], gamma, drive=drive)
-    steady = steady_states(whole.motion(), time)
-    start = State(displacement=steady[0] + u, velocity=steady[1] + v, time=time)
-    seen, stops = [], []
-    for _ in range(rng.integers(1, 5)):
-        at, side = PLACES[rng.integers(len(PLACES))], int(rng.choice((-1, 1)))
-        row = rows[at] if isinstance(at, str) else rows[at[0]] - rows[at[1]]
-        one = modes_on_stop(omega, decay, side * row, gamma, drive=drive).motion()
-        deviation = deviations(one, time, start.displacement, start.velocity)
-        signal = Signal(one, time, *deviation)
-        tops = signal.peaks(one.period - time)
-        if tops.size and signal(tops).max() > 1.2 * max(signal(Real(0)), 0) + 1e-4:
-            seen.append((one, deviation, signal, tops))
-            stops.append(Stop(gap=0.01, law=newton(0.5), at=at, side=side))
-    model = replace(whole.model, points={name: Point(row=rows[name]) for name in ("b", "c")})
-    return model, whole.drive, start, whole.period - time, stops, seen
+    """A flight before several stops: oscillator, start, length, and how each stop sees it."""
+    problem = random_problem(rng)
+    oscillator, rows = oscillator_of(problem), System(problem).rows
+    time, length = rng.uniform(0.0, 0.5) * oscillator.period, min(4.0, 0.4 * oscillator.period)
+    start = State(displacement=problem["q"], velocity=problem["v"], time=time)
+    numbers = [problem["omega"], problem["decay_rate"], problem["participation"]]
+    seen, stops, drive = [], [], (oscillator.drive.frequency, oscillator.drive.amplitude)
+    for stop, row in zip(oscillator.stops, rows, strict=True):
+        one = modes_on_stop(*numbers[:2], row.astype(float), numbers[2], drive=drive).motion()
+        flight = deviations(one, time, start.displacement, start.velocity)
+        signal = Signal(one, time, *flight)
+        tops = signal.peaks(length)
+        if tops.size and signal(tops).max() > 0.01:
+            seen.append((one, flight, signal, tops, signal(tops).max()))
+            stops.append(stop)
+    return oscillator, start, length, stops, seen
 
 
-@pytest.mark.parametrize("flights", [84, *slow(4200)])
-def test_planted_grazes(flights):
+@pytest.mark.parametrize("count", [2000, *slow(100_000)])
+@pytest.mark.filterwarnings("ignore::beam.SuspiciousValue")
+def test_planted_grazes(count):
     """The highest peak before each stop is 1e-1 to 1e-12 of the gap above or below it: which is first?"""
-    rng, told = np.random.default_rng([54, flights]), Counter()
-    for _ in range(flights):
-        model, drive, start, length, stops, seen = views(rng)
-        for h in rng.choice(PLANTED, (24, len(seen))) if seen else ():
+    rng, told = np.random.default_rng([54, count]), Counter()
+    while told.total() < count:
+        oscillator, start, length, stops, seen = views(rng)
+        for h in rng.choice(PLANTED, (48, len(seen))) if seen else ():
             touches, blurred, planted = [(length, None, 0.0)], False, []
-            for j, (motion, deviation, signal, tops) in enumerate(seen):
-                gap = float(signal(tops).max() / (1 + Real(h[j])))
-                planted.append(replace(stops[j], gap=gap))
+            for j, (motion, flight, signal, tops, highest) in enumerate(seen):
+                gap = float(highest / (1 + Real(h[j])))
+                planted.append(replace(stops[j], gap=gap, law=newton(0.5)))
                 verdict = judge(signal, gap, length, peaks=tops)
-                bound = tip_rounding(with_gap(motion, gap), *deviation)
+                bound = tip_rounding(with_gap(motion, gap), *flight)
                 blurred |= bool(abs(verdict.peak) <= 2.0 * bound)
                 if verdict.peak > 0:
                     allowed = bound / verdict.slope + 4 * EPS * (start.time + verdict.time)
@@ -145,13 +140,12 @@ def test_planted_grazes(flights):
             if blurred or (len(touches) > 2 and touches[1][0] - time <= allowed + touches[1][2]):
                 told["within rounding"] += 1
                 continue
-            until = length if stop is None else min(length, time + 1e-6 * motion.period)
-            i = simulate(
-                ImpactOscillator(model=model, stops=tuple(planted), drive=drive), start, duration=until
-            ).impacts
+            until = length if stop is None else min(length, time + 1e-6 * oscillator.period)
+            planted = replace(oscillator, stops=tuple(planted))
+            i = simulate(planted, start, duration=until).impacts
             assert i.stop[:1].tolist() == ([] if stop is None else [stop])
             assert np.all(abs(i.clock[:1] - start.time - time) <= allowed)
             assert np.all(i.kind[:1] == ImpactKind.IMPACT)
             told["free" if stop is None else "touches"] += 1
     assert told["within rounding"] < 0.01 * told.total()
-    assert min(told["free"], told["touches"]) > 2 * flights
+    assert min(told["free"], told["touches"]) > 0.2 * count
