@@ -18,8 +18,6 @@ Exact = mpmath.mpf
 ZERO, ONE = Exact(0), Exact(1)
 exp, real, exact = (np.frompyfunc(f, 1, 1) for f in (mpmath.exp, lambda x: x.real, Exact))
 CHUNK, DOUBLINGS, NUDGE = 256, 2.0 ** -np.arange(20, 0, -1), Exact("1e-22")
-
-
 PLACES = ["tip", "b", "c", ("tip", "b"), ("b", "c")]
 
 
@@ -42,9 +40,7 @@ class System:
 
     def contact(self, stop: int | None) -> tuple:
         """The row, k and c of a linear contact; without one all are zero."""
-        return (
-            (self.rows[stop], *map(Exact, self.law[stop][1:])) if stop is not None else (0 * self.omega, 0, 0)
-        )
+        return (0 * self.omega, 0, 0) if stop is None else (self.rows[stop], *map(Exact, self.law[stop][1:]))
 
     def solve(self, s: mpmath.mpc, force: np.ndarray, stop: int | None) -> np.ndarray:
         """x of (s^2 + c s + omega^2) x + (k + c s) w (w . x) = force."""
@@ -57,12 +53,9 @@ class System:
         row, k, c = self.contact(stop)
         for _ in range(20):
             own, slope = s * (s + self.decay) + self.omega**2, 2 * s + self.decay
-            share = row**2 / own
-            f, rise = (
-                1 + (k + c * s) * share.sum(),
-                c * share.sum() - (k + c * s) * (share * slope / own).sum(),
-            )
-            step = f / (rise + f * (slope / own).sum())
+            share, bend = (row**2 / own).sum(), (row**2 * slope / own**2).sum()
+            f = 1 + (k + c * s) * share
+            step = f / (c * share - (k + c * s) * bend + f * (slope / own).sum())
             s -= step
             if abs(step) < abs(s) * Exact("1e-25"):
                 return s
@@ -75,10 +68,9 @@ class System:
             rates = list(-self.decay / 2 + 1j * (self.omega**2 - self.decay**2 / 4) ** Exact(0.5))
             shapes, static = exact(np.eye(n)), 0 * self.omega
             if stop is not None:
-                stiffness, damping = (
-                    np.diag(a) + b * np.outer(row, row) for a, b in ((self.omega**2, k), (self.decay, c))
-                )
-                whole = np.block([[np.zeros((n, n)), np.eye(n)], [-stiffness, -damping]]).astype(float)
+                square = np.outer(row, row)
+                lower = [-np.diag(self.omega**2) - k * square, -np.diag(self.decay) - c * square]
+                whole = np.block([[np.zeros((n, n)), np.eye(n)], lower]).astype(float)
                 rates = [self.rate(mpmath.mpc(s), stop) for s in np.linalg.eigvals(whole) if s.imag >= 0]
                 shapes = np.array([self.solve(s, row, None) for s in rates])
                 static = self.solve(Exact(0), k * self.gaps[stop] * row, stop)
@@ -107,9 +99,8 @@ class Flow:
 
     def state(self, s: Exact) -> tuple[np.ndarray, np.ndarray]:
         grown = exp(self.rates * s)
-        return real(grown @ self.vectors) + self.drift * s, real(
-            (grown * self.rates) @ self.vectors
-        ) + self.drift
+        q, v = (real(x @ self.vectors) for x in (grown, grown * self.rates))
+        return q + self.drift * s, v + self.drift
 
 
 class Signal:
@@ -120,15 +111,13 @@ class Signal:
         self.terms, self.drift = (a + b * flow.rates) * (flow.vectors @ flow.rows[stop]), a * drift
         self.terms[0] += b * drift - a * flow.gaps[stop]
         self.fast = np.array([self.rates, self.terms, self.terms * self.rates]).astype(complex)
-        self.size, self.fastest = (
-            float(np.abs(self.fast[i]).sum(initial=0.0) if i else np.abs(self.fast[0]).max()) for i in (1, 0)
-        )
+        sizes = np.abs(self.fast)
+        self.fastest, self.size = float(sizes[0].max()), float(sizes[1].sum())
 
     def samples(self, s: np.ndarray) -> np.ndarray:
         """Value and slope in double precision, shape (2, n)."""
-        return (self.fast[1:] @ np.exp(np.multiply.outer(self.fast[0], s))).real + float(
-            self.drift
-        ) * np.array([s, 1.0 + 0 * s])
+        grown = np.exp(np.multiply.outer(self.fast[0], s))
+        return (self.fast[1:] @ grown).real + float(self.drift) * np.array([s, np.ones_like(s)])
 
     def exact(self, s: Exact) -> list:
         """Value, slope and second derivative."""
@@ -144,7 +133,7 @@ class Signal:
             low, high = (s, high) if y < 0 else (low, s)
             new = s - y / rate if rate > 0 else low - 1
             new = new if low <= new <= high else (low + high) / 2
-            if abs(new - s) * self.fastest < Exact("1e-32") * (1 + self.fastest * abs(s)):
+            if abs(new - s) * self.fastest < Exact("1e-26") * (1 + self.fastest * abs(s)):
                 return new
             s = new
         raise ArithmeticError("a root was not found")
@@ -189,11 +178,13 @@ def follow(problem: dict, *, nudge: Exact = ZERO, turn: int = 1, most: int = 10*
         signals = {("touch", j): Signal(flow, j) for j in range(len(system.rows)) if j != held}
         if held is not None:
             _, k, c = system.contact(held)
-            signals["let go" if pushed else "push", held] = Signal(
-                flow, held, -k if pushed else k, -c if pushed else c
-            )
-            if not pushed:
-                signals["leave", held] = Signal(flow, held, -ONE)
+            if pushed:
+                signals["let go", held] = Signal(flow, held, -k, -c)
+            else:
+                signals |= {
+                    ("push", held): Signal(flow, held, k, c),
+                    ("leave", held): Signal(flow, held, -ONE),
+                }
         if not (found := first_rise(signals, at_zero, end - time)):
             q, v = flow.state(end - time)
             break
@@ -282,7 +273,8 @@ def judged(rng: np.random.Generator) -> dict:
         problem, most = random_problem(rng), int(rng.integers(6, 40))
         answer = follow(problem, most=most)
         touches, at_once = answer["touches"], answer.get("at_once")
-        if min(x[3] for x in touches) < 1e-3 * max(x[3] for x in touches) if touches else True:
+        speeds = [x[3] for x in touches] or [ZERO]
+        if min(speeds) <= 1e-3 * max(speeds):
             continue
         if at_once and answer["pushed"] and len(touches) < 6:
             return complete(problem | {"duration": float(at_once) + 1.0})

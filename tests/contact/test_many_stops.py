@@ -25,8 +25,7 @@ from contact import (
     simulate,
 )
 from contact.flight.elementary import EPS
-from contact.flight.modal_flow import tip_rounding
-from contact.trajectory import deviations
+from contact.flight.modal_flow import steady_motion, tip_rounding
 
 PROBLEMS = {one["name"]: one for one in json.loads(Path(__file__).with_name("many_stops.json").read_text())}
 FRESH = int(os.environ.get("MANY_STOPS_FRESH", "40"))
@@ -108,7 +107,8 @@ def views(rng: np.random.Generator) -> tuple:
     seen, stops, drive = [], [], (oscillator.drive.frequency, oscillator.drive.amplitude)
     for stop, row in zip(oscillator.stops, rows, strict=True):
         one = modes_on_stop(*numbers[:2], row.astype(float), numbers[2], drive=drive).motion()
-        flight = deviations(one, time, start.displacement, start.velocity)
+        steady = steady_motion(one, time)
+        flight = start.displacement - steady[0], start.velocity - steady[1]
         signal = Signal(one, time, *flight)
         tops = signal.peaks(length)
         if tops.size and signal(tops).max() > 0.01:
