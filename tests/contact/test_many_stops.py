@@ -1,0 +1,151 @@
+"""Motions between several stops against 40 digits: stored ones, random ones, and planted grazes."""
+
+import json
+import os
+from collections import Counter
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from many_stops_judge import Exact, System, distance, follow, judged, random_problem
+from oscillators import modes_on_stop, newton, slow
+from tip_judge import PLANTED, Real, Signal, judge, with_gap
+
+from beam import ModalModel, Point
+from contact import (
+    ContactError,
+    HarmonicDrive,
+    ImpactKind,
+    ImpactOscillator,
+    LinearContact,
+    State,
+    Stop,
+    Trajectory,
+    simulate,
+)
+from contact.flight.elementary import EPS
+from contact.flight.modal_flow import steady_motion, tip_rounding
+
+PROBLEMS = {one["name"]: one for one in json.loads(Path(__file__).with_name("many_stops.json").read_text())}
+FRESH = int(os.environ.get("MANY_STOPS_FRESH", "40"))
+"""Random problems of the slow test; 300 take some three minutes."""
+
+
+def oscillator_of(problem: dict) -> ImpactOscillator:
+    rows = {name: problem[name] for name in ("omega", "decay_rate", "phi", "participation")}
+    points = {name: Point(row=row) for name, row in problem["points"].items()}
+    stops = []
+    for one in problem["stops"]:
+        name, *law = one["law"]
+        at = one["at"] if isinstance(one["at"], str) else tuple(one["at"])
+        law = newton(*law) if name == "newton" else LinearContact(stiffness=law[0], damping=law[1])
+        stops.append(Stop(gap=one["gap"], law=law, at=at, side=one["side"]))
+    return ImpactOscillator(
+        model=ModalModel(**rows, points=points, dimensionless=True),
+        stops=tuple(stops),
+        drive=HarmonicDrive(frequency=problem["w"] / (2.0 * np.pi), amplitude=problem["amplitude"]),
+    )
+
+
+def run(problem: dict, duration: float | None = None) -> Trajectory:
+    q, v = (np.array(problem[name], dtype=float) for name in ("q", "v"))
+    end = float(problem["duration"]) if duration is None else duration
+    return simulate(oscillator_of(problem), State(displacement=q, velocity=v), duration=end)
+
+
+def check(problem: dict) -> None:
+    """Every touch and the end to 1e3 roundings of the start, or the refusal at the second touch."""
+    answer = problem["answer"]
+    if "at_once" in answer:
+        time = float(answer["at_once"])
+        run(problem, time * (1.0 - 1e-6))
+        with pytest.raises(ContactError, match="touched at once"):
+            run(problem, time * (1.0 + 1e-6))
+        return
+    end = run(problem)
+    i = end.impacts
+    assert np.all(i.kind == ImpactKind.IMPACT)
+    touches = zip(i.stop.tolist(), i.start, i.end, i.approach, i.rebound, strict=True)
+    found = {"touches": list(touches), "q": end.end.displacement, "v": end.end.velocity}
+    assert distance(problem, answer, found) <= 1e3 * EPS * answer["amplification"]
+
+
+@pytest.mark.filterwarnings("ignore:frequency of the drive:beam.SuspiciousValue")
+@pytest.mark.parametrize("name", PROBLEMS)
+def test_stored_motions(name):
+    check(PROBLEMS[name])
+
+
+@pytest.mark.parametrize("name", [name for name, one in PROBLEMS.items() if "known" in one])
+def test_judge_agrees_with_another_program(name):
+    """To 1e-20: the judge computes anew what the other program has computed in 40 digits."""
+    answer, known = follow(PROBLEMS[name]), PROBLEMS[name]["known"]
+    pairs = [([answer["at_once"]], [known["at_once"]])] if "at_once" in known else []
+    for stop, time, speed in known.get("touches", []):
+        own = min((x for x in answer["touches"] if x[0] == stop), key=lambda x: abs(x[1] - Exact(time)))
+        pairs.append(([own[1], own[3]], [time, speed]))
+    if "end" in known:
+        pairs.append((answer["q"] + answer["v"], [*known["end"][0], *known["end"][1]]))
+    for ours, theirs in pairs:
+        assert max(abs(a - Exact(b)) for a, b in zip(ours, theirs, strict=True)) < Exact("1e-20")
+
+
+@pytest.mark.slow
+def test_fresh_motions():
+    for seed in range(FRESH):
+        check(judged(np.random.default_rng([53, seed])))
+
+
+def views(rng: np.random.Generator) -> tuple:
+    """A flight before several stops: oscillator, start, length, and how each stop sees it."""
+    problem = random_problem(rng)
+    oscillator, rows = oscillator_of(problem), System(problem).rows
+    time, length = rng.uniform(0.0, 0.5) * oscillator.period, min(4.0, 0.4 * oscillator.period)
+    start = State(displacement=problem["q"], velocity=problem["v"], time=time)
+    numbers = [problem["omega"], problem["decay_rate"], problem["participation"]]
+    seen, stops, drive = [], [], (oscillator.drive.frequency, oscillator.drive.amplitude)
+    for stop, row in zip(oscillator.stops, rows, strict=True):
+        one = modes_on_stop(*numbers[:2], row.astype(float), numbers[2], drive=drive).motion()
+        steady = steady_motion(one, time)
+        flight = start.displacement - steady[0], start.velocity - steady[1]
+        signal = Signal(one, time, *flight)
+        tops = signal.peaks(length)
+        if tops.size and signal(tops).max() > 0.01:
+            seen.append((one, flight, signal, tops, signal(tops).max()))
+            stops.append(stop)
+    return oscillator, start, length, stops, seen
+
+
+@pytest.mark.parametrize("count", [2000, *slow(100_000)])
+@pytest.mark.filterwarnings("ignore::beam.SuspiciousValue")
+def test_planted_grazes(count):
+    """The highest peak before each stop is 1e-1 to 1e-12 of the gap above or below it: which is first?"""
+    rng, told = np.random.default_rng([54, count]), Counter()
+    while told.total() < count:
+        oscillator, start, length, stops, seen = views(rng)
+        for h in rng.choice(PLANTED, (48, len(seen))) if seen else ():
+            touches, blurred, planted = [(length, None, 0.0)], False, []
+            for j, (motion, flight, signal, tops, highest) in enumerate(seen):
+                gap = float(highest / (1 + Real(h[j])))
+                planted.append(replace(stops[j], gap=gap, law=newton(0.5)))
+                verdict = judge(signal, gap, length, peaks=tops)
+                bound = tip_rounding(with_gap(motion, gap), *flight)
+                blurred |= bool(abs(verdict.peak) <= 2.0 * bound)
+                if verdict.peak > 0:
+                    allowed = bound / verdict.slope + 4 * EPS * (start.time + verdict.time)
+                    touches.append((float(verdict.time), j, float(allowed)))
+            touches.sort()
+            time, stop, allowed = touches[0]
+            if blurred or (len(touches) > 2 and touches[1][0] - time <= allowed + touches[1][2]):
+                told["within rounding"] += 1
+                continue
+            until = length if stop is None else min(length, time + 1e-6 * oscillator.period)
+            planted = replace(oscillator, stops=tuple(planted))
+            i = simulate(planted, start, duration=until).impacts
+            assert i.stop[:1].tolist() == ([] if stop is None else [stop])
+            assert np.all(abs(i.clock[:1] - start.time - time) <= allowed)
+            assert np.all(i.kind[:1] == ImpactKind.IMPACT)
+            told["free" if stop is None else "touches"] += 1
+    assert told["within rounding"] < 0.01 * told.total()
+    assert min(told["free"], told["touches"]) > 0.2 * count
