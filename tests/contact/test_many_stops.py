@@ -111,7 +111,10 @@ def views(rng: np.random.Generator) -> tuple:
         flight = start.displacement - steady[0], start.velocity - steady[1]
         signal = Signal(one, time, *flight)
         tops = signal.peaks(length)
-        if tops.size and signal(tops).max() > 0.01:
+        same = any(
+            np.linalg.matrix_rank([row.astype(float), a[0].phi]) < 2 and row @ a[0].phi > 0 for a in seen
+        )
+        if tops.size and signal(tops).max() > 0.01 and not same:
             seen.append((one, flight, signal, tops, signal(tops).max()))
             stops.append(stop)
     return oscillator, start, length, stops, seen
