@@ -7,20 +7,29 @@ followed through the contact until the tip leaves the wall (``contact.touch``). 
 costs one multiplication by the flow of a period and a proof, most often from the lowest mode alone.
 
 With several stops each flight is searched for a touch of one after the other, always up to the earliest touch
-found so far.  While one stop is touched, each step of the contact gives the heights over the others as power
-series, and a touch of a second stop ends the run.
+found so far.
 """
 
-from collections.abc import Callable
-from types import SimpleNamespace
 from typing import NamedTuple
 
 import numpy as np
 
 from contact import touch
-from contact.engine.recorder import put_sample, sample_due, sample_flight, strobe
+from contact.engine.contacts import (
+    CROSSED,
+    DONE,
+    FAILED_CHATTER,
+    FAILED_CROSSING,
+    FAILED_SECOND,
+    FAILED_STEPS,
+    GOING,
+    GRAZED,
+    LOG_FULL,
+    MOST_STEPS,
+    follow_contact,
+)
+from contact.engine.recorder import sample_due, sample_flight, strobe
 from contact.flight.crossing import CROSSES, FREE, UNRESOLVED, searched_flight
-from contact.flight.elementary import EPS
 from contact.flight.modal_flow import (
     LOOK,
     START_U,
@@ -33,38 +42,19 @@ from contact.flight.modal_flow import (
     propagate_flight,
     tip_rounding,
 )
-from contact.flight.motion import NUMBERS, STACKED, TIME_SCALE, WEIGHT, seen_from, stops_of
-from contact.flight.polynomial_root import first_polynomial_root
+from contact.flight.motion import seen_from, stops_of
 from contact.flight.sampled_crossing import first_sampled_crossing
 from contact.flight.tip_search import tip_now
 from contact.machine.compiled import borrowed, held, kernel, part
-from contact.touch.passage import (
-    AT_END,
-    RELEASED,
-    SECOND,
-    TOO_MANY,
-    add_exchange,
-    follower,
-    is_full,
-    meet,
-    put_state,
-)
-from contact.touch.series import Series, fitted, new_series
-from contact.trajectory import OUTSIDE, STAY
-
-DONE, FAILED_CROSSING, FAILED_CHATTER, FAILED_STEPS, FAILED_SERIES, FAILED_SECOND, LOG_FULL = range(7)
-GOING, CROSSED, GRAZED = range(-3, 0)
-"""Further statuses within the loop: not at an end; at a touch; at a graze."""
+from contact.touch.passage import is_full, meet
+from contact.touch.series import Series, new_series
+from contact.trajectory import OUTSIDE
 
 TOGETHER = UNRESOLVED + 1  # further outcome of a flight: two stops are touched at once
 
 MOST_IMPACTS = 100_000
 """Bound of impacts in one drive period.  Accumulating impacts with e = 0.999 take about 2e4 before the hops
 are lost in rounding, so that a longer sequence does not come to rest."""
-
-MOST_STEPS = 200_000
-"""Bound of flights and contact steps in one drive period.  2e5 steps of two radians reach modes of 6e4 drive
-frequencies; with twelve modes they take half a second."""
 
 
 class Workspace(NamedTuple):
@@ -159,108 +149,6 @@ def follow_flights(motion, u, v, run, last, clock_end, space, recorder, samples)
             status = DONE if at_last else GOING
             if not at_last:
                 strobe(run, marks, strobes, counts, u, v)
-    return status
-
-
-@kernel
-def sample_touch(motion, run, s, until, series, space, recorder):
-    """Write states at the sample times of a contact step up to `s`, at the clock `until` [s]."""
-    while sample_due(recorder, run.period, until):
-        time = recorder.sample_clock[recorder.marks[0].sampled] - run.clock
-        at = touch.series_variable(motion, time, s, series)
-        touch.state(motion, run, at, series, space.u, space.v)
-        put_sample(recorder, space.u, space.v)
-
-
-@part
-def rest_of_hops(run, until, recorder):
-    """How far a step up to the clock `until` [s] lies in the hops before a stay, whose row is open [s]."""
-    row = recorder.log[recorder.marks[0].logged - 1]
-    if row.kind != STAY or row.period < run.period or (row.period == run.period and row.start <= run.clock):
-        return 0.0
-    return until - run.clock if row.period > run.period else min(row.start, until) - run.clock
-
-
-def reached(height_over: Callable[..., int]) -> Callable[..., bool]:
-    """Whether a step of a contact reaches another stop; of the law, its function of the same name.
-
-    A height within rounding of the stop counts as a touch.
-    """
-
-    def reaches(motion, run, u, v, s, series, space):
-        """`s` is the end of the step from (u, v)."""
-        stops, out = space.stops, space.height
-        for j in range(stops.shape[0] // STACKED):
-            top = STACKED * j
-            weight, own = stops[top + WEIGHT], stops[top + NUMBERS]
-            if j == run.stop:
-                continue
-            order = height_over(motion, run, weight, own, series, out)
-            size, away, reach = abs(own[0]) + own[3] + own[4], 0.0, 1.0
-            for k in range(u.size):
-                size += abs(weight[k]) * (abs(u[k]) + abs(v[k]) * motion.modes[TIME_SCALE, k])
-            for n in range(1, order + 1):
-                reach *= s
-                away += abs(out[n]) * reach
-            margin = 8.0 * EPS * size
-            out[0] += 2.0 * margin
-            if order > 0 and out[0] + away > -margin:
-                out[order + 1 :] = 0.0
-                if first_polynomial_root(out, 1.0, s, margin) >= 0.0:
-                    return True
-        return False
-
-    return kernel(reaches)
-
-
-def recorded(law: SimpleNamespace) -> Callable[..., bool]:
-    """The `Watch` of the event loop: samples are taken, what the tip gives to the stop is written."""
-    exchange, state, reaches = law.exchange, law.state, reached(law.height_over)
-
-    def watch(motion, run, u, v, s, until, series, watcher):
-        space, recorder = watcher
-        if space.stops.shape[0] > STACKED and reaches(motion, run, u, v, s, series, space):
-            return True
-        if sample_due(recorder, run.period, until):
-            sample_touch(motion, run, s, until, series, space, recorder)
-        if recorder.log.size > 0:
-            last, hops = recorder.marks[0].logged - 1, rest_of_hops(run, until, recorder)
-            if hops > 0.0:
-                state(motion, run, hops, series, space.u, space.v)
-                put_state(recorder.log_state[last], 0, space.u, space.v)
-            known = recorder.log[last].peak_force
-            work, impulse, force = exchange(motion, run, (hops, s), series, known)
-            add_exchange(recorder, work, impulse, force)
-        return False
-
-    return part(watch)
-
-
-follow = follower(recorded)
-
-
-@part
-def follow_contact(motion, u, v, run, last, clock_end, space, recorder):
-    """Follow a contact to its release or the end of the run; returns the status."""
-    status, series = GOING, space.series
-    if space.stops.shape[0] > STACKED:
-        order, columns = touch.series_size(motion)
-        series = fitted(series, order, columns)
-    while status == GOING:
-        at_last = run.period == last
-        end = clock_end if at_last else motion.period
-        left = follow(motion, u, v, run, end, MOST_STEPS, recorder, series, (space, recorder))
-        if left == RELEASED:
-            return GOING
-        if left == SECOND:
-            return FAILED_SECOND
-        if left != AT_END:
-            return FAILED_STEPS if left == TOO_MANY else FAILED_SERIES
-        while sample_due(recorder, run.period, end):  # samples closer to the end than any step
-            put_sample(recorder, u, v)
-        run.clock, status = end, DONE if at_last else GOING
-        if not at_last:
-            strobe(run, recorder.marks[0], recorder.strobes, recorder.counts, u, v)
     return status
 
 

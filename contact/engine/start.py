@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from beam.parameters import InvalidValue, require
+from contact.engine import contacts
 from contact.engine import event_loop as loop
 from contact.engine.recorder import grown, recorder_for, trajectory_of
 from contact.errors import Chatter, ContactError, ContactTooStiff, TouchedAtOnce, UnresolvedCrossing
@@ -21,11 +22,11 @@ HELD_WITHIN = 1e3  # largest distance from the gap of a tip that rests on the wa
 FAST = 1e300  # a rate at which any dashpot pulls more than a spring pushes [m/s]
 
 FAILURES: dict[int, tuple[type[ContactError], str]] = {
-    loop.FAILED_CROSSING: (UnresolvedCrossing, ""),
-    loop.FAILED_CHATTER: (Chatter, f"more than {loop.MOST_IMPACTS} in one drive period"),
-    loop.FAILED_STEPS: (ContactTooStiff, f"more than {loop.MOST_STEPS} steps in one drive period"),
-    loop.FAILED_SECOND: (TouchedAtOnce, ""),
-    loop.FAILED_SERIES: (ContactTooStiff, "its power series gives no step of finite length above zero"),
+    contacts.FAILED_CROSSING: (UnresolvedCrossing, ""),
+    contacts.FAILED_CHATTER: (Chatter, f"more than {loop.MOST_IMPACTS} in one drive period"),
+    contacts.FAILED_STEPS: (ContactTooStiff, f"more than {contacts.MOST_STEPS} steps in one drive period"),
+    contacts.FAILED_SECOND: (TouchedAtOnce, ""),
+    contacts.FAILED_SERIES: (ContactTooStiff, "its power series gives no step of finite length above zero"),
 }
 """The error for each failure status of `advance`, and its detail."""
 
@@ -121,7 +122,7 @@ def start_of_several(
         found.append(start_of(seen, replace(state, regime=regime, stop=j), period, clock))
     touched = [start for start in found if start[2]["regime"][0] != OUTSIDE]
     if len(touched) > 1:
-        raise failure(loop.FAILED_SECOND, motion, touched[0][2], *touched[0][:2])
+        raise failure(contacts.FAILED_SECOND, motion, touched[0][2], *touched[0][:2])
     on_wall = [start for start in found if start[2]["contact_order"][0] > 0]
     return (touched or on_wall or found)[0]
 
@@ -145,6 +146,10 @@ def failure(status: int, motion: Motion, runs: np.ndarray, u: np.ndarray, v: np.
     clock, stop = float(runs[0]["clock"]), int(runs[0]["stop"])
     height, velocity, _acceleration = tip_state(views_of(motion)[stop], clock, u, v)
     error, detail = FAILURES[status]
+    if error is TouchedAtOnce:
+        views, near = views_of(motion), HELD_WITHIN * tip_rounding(views_of(motion)[stop], u, v)
+        met = [str(j) for j, one in enumerate(views) if tip_state(one, clock, u, v)[0] >= -near]
+        detail = f"these are stops {' and '.join(met)}"
     time = int(runs[0]["period"]) * motion.period + clock
     return error(time=time, gap=-height, velocity=velocity, detail=detail)
 
