@@ -124,7 +124,8 @@ def test_planted_grazes(count):
     rng, told = np.random.default_rng([54, count]), Counter()
     while told.total() < count:
         oscillator, start, length, stops, seen = views(rng)
-        for h in rng.choice(PLANTED, (48, len(seen))) if seen else ():
+        for _ in range(48 if seen else 0):
+            h = rng.choice(PLANTED, len(seen), replace=False)
             touches, blurred, planted = [(length, None, 0.0)], False, []
             for j, (motion, flight, signal, tops, highest) in enumerate(seen):
                 gap = float(highest / (1 + Real(h[j])))
