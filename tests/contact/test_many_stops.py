@@ -29,7 +29,7 @@ from contact.flight.modal_flow import steady_motion, tip_rounding
 
 PROBLEMS = {one["name"]: one for one in json.loads(Path(__file__).with_name("many_stops.json").read_text())}
 FRESH = int(os.environ.get("MANY_STOPS_FRESH", "40"))
-"""Random problems of the slow test; 300 take some three minutes."""
+"""Random problems of the slow test; 300 take some seven minutes."""
 
 
 def oscillator_of(problem: dict) -> ImpactOscillator:
