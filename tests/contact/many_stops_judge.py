@@ -237,7 +237,7 @@ def complete(problem: dict) -> dict:
 
 
 def random_problem(rng: np.random.Generator) -> dict:
-    """One to eight modes between one to four stops, whose gaps the motion without them exceeds."""
+    """One to eight modes between one to four stops, with gaps that the motion without them exceeds."""
     n = int(rng.integers(1, 9))
     omega = np.append(1.0, np.sort(rng.uniform(1.3, 40.0, n - 1)))
     phi, b, c, gamma = rng.uniform(-1.0, 1.0, (4, n)) * omega**-0.5 + np.eye(1, n)
@@ -254,8 +254,8 @@ def random_problem(rng: np.random.Generator) -> dict:
         "duration": 200.0,
         "stops": [],
     }
-    for _ in range(rng.integers(1, 5)):
-        stop = {"gap": 0.0, "at": PLACES[rng.integers(len(PLACES))], "side": int(rng.choice((-1, 1)))}
+    for i in rng.choice(2 * len(PLACES), rng.integers(1, 5), replace=False):
+        stop = {"gap": 0.0, "at": PLACES[i // 2], "side": int(1 - 2 * (i % 2))}
         system = System(problem | {"stops": [stop | {"law": []}]})
         free = Signal(Flow(system, Exact(0), *(numbers(problem[name]) for name in ("q", "v")), None), 0)
         stop["gap"] = rng.uniform(0.1, 0.5) * float(free.samples(np.arange(0.0, 40.0, 0.02))[0].max())
