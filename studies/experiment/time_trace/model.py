@@ -2,7 +2,8 @@
 
     N = k d + c d'  (linear),   N = k d^(3/2) (1 + chi d')  (Hertz: chi = 0),   at depth d [m], rate d' [m/s]
 
-A law of restitution has no force: not a number.
+A law of restitution has no force: not a number. Between several stops the touches are listed instead of
+collisions, which are those of one stop.
 
 The spectrum: a signal of period P, sampled over a whole number of periods, is a sum of lines at the multiples
 of 1/P,
@@ -32,6 +33,9 @@ from contact import (
     NewtonRestitution,
     PowerContact,
     State,
+    StrobedMap,
+    StrobedOrbit,
+    StroboscopicMap,
     Trajectory,
     collisions,
     simulate,
@@ -78,8 +82,63 @@ class Trace:
     time: Array
     tip: Array
     readout: Array
-    impact_times: Array
+    impacts: list[Touch]
     collisions: list[Collision]
+
+    @property
+    def impact_times(self) -> Array:
+        """Times of the impacts [s]."""
+        return np.array([touch.time for touch in self.impacts])
+
+
+@dataclass(frozen=True, kw_only=True)
+class Touch:
+    """An impact on one of the stops."""
+
+    stop: Annotated[int, "number of the stop: 0 is [stop], then those of [[stops]]"]
+    time: Annotated[float, "time of the touch, from the strobe at which the stretch begins [s]"]
+    approach: Annotated[float, "velocity towards the stop at the touch [m/s]"]
+    rebound: Annotated[float, "velocity towards the stop at the release [m/s]"]
+    contact_time: Annotated[float, "time in contact [s]"]
+    peak_force: Annotated[float, "largest contact force [N]; none under Newton's law"]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SimulatedMap:
+    """The period map of a spring with several stops.
+
+    Its points are phi_k q_k and phi_k q_k'/omega_k [m], with the drive's omega for slower modes.
+    """
+
+    oscillator: ImpactOscillator
+
+    @property
+    def scale(self) -> float:
+        """The narrowest gap [m]."""
+        return min(stop.gap for stop in self.oscillator.stops)
+
+    def at(self, excess: float) -> SimulatedMap:
+        """The same spring at another excess [1]."""
+        return SimulatedMap(oscillator=self.oscillator.with_excess(excess))
+
+    def steady(self) -> State:
+        """The steady motion at a strobe, as it would be without stops."""
+        drive = self.oscillator.driven
+        steady = drive.amplitude * self.oscillator.steady_response()
+        return State(displacement=steady.imag, velocity=drive.angular_frequency * steady.real)
+
+    def orbit(self, state: State, count: int) -> StrobedOrbit[State]:
+        """`count` drive periods from `state`."""
+        run, model = simulate(self.oscillator, state, periods=count), self.oscillator.model
+        slowness = model.phi / np.maximum(model.omega, self.oscillator.driven.angular_frequency)
+        points = np.hstack([model.phi * run.strobe_displacement, slowness * run.strobe_velocity])
+        return StrobedOrbit(end=run.end, points=points, impacts=run.strobe_impacts)
+
+
+def map_of(oscillator: ImpactOscillator) -> StrobedMap[State]:
+    """The period map, compiled for one stop."""
+    kind = StroboscopicMap if len(oscillator.stops) == 1 else SimulatedMap
+    return kind(oscillator=oscillator)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -98,13 +157,24 @@ def trace_of(oscillator: ImpactOscillator, state: State, length: int) -> Trace:
     begin, span = state.time, length * oscillator.period
     time = span * np.arange(length * PER_PERIOD) / (length * PER_PERIOD)
     run = simulate(oscillator, state, periods=length + 2, times=begin + time)
-    touches = run.impacts.start[(run.impacts.kind == ImpactKind.IMPACT) & (run.impacts.start < begin + span)]
-    final = collisions(run, unfinished="drop")
+    impacts, final = run.impacts, list[Collision]()
+    if len(oscillator.stops) == 1:
+        final = collisions(run, unfinished="drop")
     return Trace(
         time=time,
         tip=oscillator.tip(run.displacement),
         readout=run.displacement @ oscillator.model.points[READOUT].row,
-        impact_times=touches - begin,
+        impacts=[
+            Touch(
+                stop=int(impacts.stop[i]),
+                time=float(impacts.start[i] - begin),
+                approach=float(impacts.approach[i]),
+                rebound=float(impacts.rebound[i]),
+                contact_time=float(impacts.end[i] - impacts.start[i]),
+                peak_force=float(impacts.peak_force[i]),
+            )
+            for i in np.flatnonzero((impacts.kind == ImpactKind.IMPACT) & (impacts.start < begin + span))
+        ],
         collisions=[collision for collision in final if collision.first_touch < begin + span],
     )
 
@@ -126,9 +196,9 @@ def close_up(oscillator: ImpactOscillator, state: State, collision: Collision) -
     )
 
 
-def touching(run: Trajectory) -> NDArray[np.bool_]:
-    """Whether tip and plate touch at the samples of a trajectory, shape (n_samples,)."""
-    begin, end = run.impacts.start, run.impacts.end
+def touching(run: Trajectory, stop: int = 0) -> NDArray[np.bool_]:
+    """Whether the stop with this number is touched at the samples of a trajectory, shape (n_samples,)."""
+    begin, end = (times[run.impacts.stop == stop] for times in (run.impacts.start, run.impacts.end))
     inside: NDArray[np.bool_] = np.any((run.time[:, None] >= begin) & (run.time[:, None] <= end), axis=1)
     return inside
 

@@ -13,6 +13,7 @@ brings a `SuspiciousValue` warning. Reading a scene solves no eigenvalue problem
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
@@ -35,7 +36,7 @@ from studies.shell.programs import COMMAND
 from studies.shell.scene.key import OPEN as OPEN
 from studies.shell.scene.key import SceneError, shown
 from studies.shell.scene.law import approach_speed as approach_speed
-from studies.shell.scene.law import contact_law_of, further_stops_of
+from studies.shell.scene.law import contact_law_of
 from studies.shell.scene.law import hertz_of as hertz_of
 from studies.shell.scene.spring import READOUT as READOUT
 from studies.shell.scene.spring import (
@@ -132,9 +133,24 @@ def harmonic(scene: Scene) -> Scene:
 def one_stop(scene: Scene) -> Scene:
     """The scene itself, or SceneError if it has further stops."""
     if scene.stops:
-        words = "besides [stop]; this needs [stop] alone, so take them out of the file"
-        raise SceneError(f"stops has {len(scene.stops)} tables [[stops]] {words}")
+        raise SceneError(
+            "the scene has tables [[stops]], and this needs [stop] alone: take them out of the file"
+        )
     return scene
+
+
+def further_stops_of(scene: Scene) -> list[Stop]:
+    """The stops of [[stops]], each with the law of [contact] or its own."""
+    found = []
+    for number, keys in enumerate(scene.stops, start=1):
+        own = scene if keys.law == "contact" else dataclasses.replace(scene, stop=keys, contact=keys)
+        try:
+            if keys.at == READOUT and scene.readout.quantity == "rotation":
+                raise SceneError("at is readout, whose quantity is a rotation; a stop needs a displacement")
+            found.append(Stop(gap=keys.gap_m, law=contact_law_of(own), at=keys.at, side=keys.side))
+        except Refusal as error:
+            raise SceneError(f"[[stops]] {number}: {error}") from error
+    return found
 
 
 def _on_stop(

@@ -1,18 +1,8 @@
 """The contact law of a scene, from the bodies of ball and plate or from its own numbers."""
 
-import dataclasses
 import math
 
-from beam import Refusal
-from contact import (
-    ContactLaw,
-    HertzContact,
-    HuntCrossley,
-    LinearContact,
-    NewtonRestitution,
-    PowerContact,
-    Stop,
-)
+from contact import ContactLaw, HertzContact, HuntCrossley, LinearContact, NewtonRestitution, PowerContact
 from studies import letter
 from studies.shell.scene.key import SceneError
 from studies.shell.scene.values import Scene
@@ -73,17 +63,3 @@ def contact_law_of(scene: Scene) -> ContactLaw:
         stiffness = mass * (math.pi / hertz_of(scene).contact_time(mass, speed)) ** 2
     keys = {"stiffness": "contact.stiffness_n_per_m", "damping": "contact.damping_ns_per_m"}
     return scene.make(LinearContact, keys, stiffness=stiffness)
-
-
-def further_stops_of(scene: Scene) -> list[Stop]:
-    """The stops of [[stops]], each with the law of [contact] or its own."""
-    found = []
-    for number, keys in enumerate(scene.stops, start=1):
-        own = scene if keys.law == "contact" else dataclasses.replace(scene, stop=keys, contact=keys)
-        try:
-            if keys.at == "readout" and scene.readout.quantity == "rotation":
-                raise SceneError("at is readout, whose quantity is a rotation; a stop needs a displacement")
-            found.append(Stop(gap=keys.gap_m, law=contact_law_of(own), at=keys.at, side=keys.side))
-        except Refusal as error:
-            raise SceneError(f"[[stops]] {number}: {error}") from error
-    return found

@@ -69,8 +69,8 @@ class Scene:
         return value
 
     def replace(self, changes: Mapping[str, object], *, provenance: str = GIVEN) -> Scene:
-        """The scene with other values for some dotted keys, and for `stops`, a list of tables that replaces all
-        of them; `provenance` says where these come from."""
+        """The scene with other values for some dotted keys; `provenance` says where these come from.  The key
+        `stops` takes a list of tables, which replaces all of them."""
         sections: dict[str, Any] = {}
         for key, value in changes.items():
             if key == STOPS:
