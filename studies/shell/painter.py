@@ -195,7 +195,7 @@ def stage_of(
     figure = Figure(figsize=(size[0] / dots, size[1] / dots), dpi=dots)
     canvas, axes = FigureCanvasAgg(figure), figure.add_axes((0.0, 0.0, 1.0, 1.0), xlim=(-1, 1), ylim=(-1, 1))
     seen = axes.add_collection(PolyCollection([], linewidths=0.4, antialiaseds=False))  # no seams
-    edges = [axes.plot([], [], color=TOUCHED, linewidth=2.5)[0] for _ in plates]
+    (edge,) = axes.plot([], [], color=TOUCHED, linewidth=2.5)
     axes.axis("off")
 
     def picture(moment: Moment) -> Picture:
@@ -203,8 +203,11 @@ def stage_of(
         faces = np.concatenate([scenery.placed(moment)[corners], *moved, *(one for one, _ in still)])
         places, shades = view.painted(faces, colours)
         seen.set(verts=places, facecolors=shades, edgecolors=shades)
-        for edge, plate, touched in zip(edges, moved, moment.touched or [False] * len(edges), strict=True):
-            edge.set_data(*(outline(view(plate.reshape(-1, 3))).T if touched else ((), ())))
+        rims = [
+            outline(view(one.reshape(-1, 3))) for one, on in zip(moved, moment.touched, strict=False) if on
+        ]
+        gap = np.full((1, 2), np.nan)  # no line from one rim to the next
+        edge.set_data(*np.concatenate([gap, *(part for rim in rims for part in (rim, gap))]).T)
         canvas.draw()
         return np.asarray(canvas.buffer_rgba(), dtype=np.uint8)[..., :3].copy()
 

@@ -18,8 +18,8 @@ close-up is drawn.
 With --film the orbit is filmed, slow at the collision, seen in space (`film`).
 
 Run:     python -m studies time_trace [--excess E] [--frequency HZ] [--film]
-Writes:  time_trace.npz, collisions.csv (of several stops impacts.csv), spectrum.npz, peaks.csv,
-         time_trace.png, spectrum.png; with --film motion.gif, motion.mp4 (extra `video`) and motion.pvd for ParaView
+Writes:  time_trace.npz, collisions.csv or impacts.csv, spectrum.npz, peaks.csv, time_trace.png, spectrum.png;
+         with --film motion.gif, motion.mp4 (extra `video`) and motion.pvd for ParaView
 """
 
 from __future__ import annotations
@@ -34,16 +34,8 @@ from contact import Collision
 from contact.orbits import born
 from studies import letter
 from studies.experiment.time_trace import film as filming
-from studies.experiment.time_trace.model import (
-    WORDS,
-    Peak,
-    Touch,
-    close_up,
-    lines_of,
-    map_of,
-    peaks_of,
-    trace_of,
-)
+from studies.experiment.time_trace import model as computed
+from studies.experiment.time_trace.model import WORDS, Peak, Touch, close_up, lines_of, peaks_of, trace_of
 from studies.physics.descriptions import word
 from studies.shell.digits import written
 from studies.shell.film import MOST_FRAMES
@@ -92,7 +84,7 @@ def time_trace(
     model = model_of(scene)
     require_drive_below(scene, model, drive_hz)
     oscillator = beam_at(scene, drive_hz, model).with_excess(excess)
-    settled = born(map_of(oscillator), excess, most_cycles=max(scene.scan.settle_cycles, 1))
+    settled = born(computed.map_of(oscillator), excess, most_cycles=max(scene.scan.settle_cycles, 1))
     length = ORBIT_PERIODS * settled.period or APERIODIC
     trace = trace_of(oscillator, settled.end, length)
     # over one period of the orbit: a longer stretch only puts zeros between its lines
@@ -114,7 +106,7 @@ def time_trace(
     run.table("peaks", peaks, "Peaks in the spectrum of the read-out.", of=Peak, show=(), words=peaked)
     from studies.experiment.time_trace.figure import draw_spectrum, draw_trace  # matplotlib is slow to import
 
-    name, impacts = word(settled.period), round(len(trace.impacts) / share)
+    name, impacts = word(settled.period), round(trace.impact_times.size / share)
     near = close_up(oscillator, settled.end, trace.collisions[0]) if trace.collisions else None
     run.figure(
         "time_trace",

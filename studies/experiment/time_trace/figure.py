@@ -40,9 +40,9 @@ def draw_trace(trace: Trace, near: CloseUp | None, stops: Sequence[Stop], unit: 
         motion: plotting.Style = {"color": plotting.BLUE, "linewidth": 0.8, "label": "motion"}
         axis.plot(1e3 * trace.time[::step], 1e3 * shown[::step], **motion)
         axis.margins(x=0.0)
-        for touch in trace.impacts:
+        for at, touch in zip(1e3 * trace.impact_times, trace.impacts, strict=True):
             where, look = f" on plate {touch.stop}" if len(stops) > 1 else "", FURTHER if touch.stop else MARK
-            axis.axvline(1e3 * touch.time, **look, label=f"impact{where}")
+            axis.axvline(at, **look, label=f"impact{where}")
         plotting.panel(axis, number, (f"ball: {title}", "read-out point")[number])
     plotting.label(tip.yaxis, "ball", "mm")
     plotting.label(readout.yaxis, "rotation" if unit == "rad" else "read-out", f"m{unit}")

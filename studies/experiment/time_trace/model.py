@@ -15,7 +15,7 @@ and the discrete Fourier transform gives a_j without leakage and without a windo
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Annotated
 
 import numpy as np
@@ -82,24 +82,20 @@ class Trace:
     time: Array
     tip: Array
     readout: Array
+    impact_times: Array
     impacts: list[Touch]
     collisions: list[Collision]
-
-    @property
-    def impact_times(self) -> Array:
-        """Times of the impacts [s]."""
-        return np.array([touch.time for touch in self.impacts])
 
 
 @dataclass(frozen=True, kw_only=True)
 class Touch:
-    """An impact on one of the stops."""
+    """An impact on one of the stops; the fields are those of `contact.Impacts`."""
 
-    stop: Annotated[int, "number of the stop: 0 is [stop], then those of [[stops]]"]
-    time: Annotated[float, "time of the touch, from the strobe at which the stretch begins [s]"]
+    stop: Annotated[int, "number of the stop; 0 is that of [stop]"]
+    start: Annotated[float, "time of the touch [s]"]
+    end: Annotated[float, "time of the release [s]"]
     approach: Annotated[float, "velocity towards the stop at the touch [m/s]"]
     rebound: Annotated[float, "velocity towards the stop at the release [m/s]"]
-    contact_time: Annotated[float, "time in contact [s]"]
     peak_force: Annotated[float, "largest contact force [N]; none under Newton's law"]
 
 
@@ -157,24 +153,16 @@ def trace_of(oscillator: ImpactOscillator, state: State, length: int) -> Trace:
     begin, span = state.time, length * oscillator.period
     time = span * np.arange(length * PER_PERIOD) / (length * PER_PERIOD)
     run = simulate(oscillator, state, periods=length + 2, times=begin + time)
-    impacts, final = run.impacts, list[Collision]()
-    if len(oscillator.stops) == 1:
-        final = collisions(run, unfinished="drop")
+    impacts, names = run.impacts, [field.name for field in fields(Touch)]
+    felt = (impacts.kind == ImpactKind.IMPACT) & (impacts.start < begin + span)
+    columns = [getattr(impacts, name)[felt].tolist() for name in names]
+    final = [] if len(oscillator.stops) > 1 else collisions(run, unfinished="drop")
     return Trace(
         time=time,
         tip=oscillator.tip(run.displacement),
         readout=run.displacement @ oscillator.model.points[READOUT].row,
-        impacts=[
-            Touch(
-                stop=int(impacts.stop[i]),
-                time=float(impacts.start[i] - begin),
-                approach=float(impacts.approach[i]),
-                rebound=float(impacts.rebound[i]),
-                contact_time=float(impacts.end[i] - impacts.start[i]),
-                peak_force=float(impacts.peak_force[i]),
-            )
-            for i in np.flatnonzero((impacts.kind == ImpactKind.IMPACT) & (impacts.start < begin + span))
-        ],
+        impact_times=impacts.start[felt] - begin,
+        impacts=[Touch(**dict(zip(names, row, strict=True))) for row in zip(*columns, strict=True)],
         collisions=[collision for collision in final if collision.first_touch < begin + span],
     )
 
