@@ -96,9 +96,9 @@ class Scenery:
         plates, ball = list[Array](), mesh.points[np.unique(mesh.triangles)].mean(axis=0)
         half, beside = 2.0 * ball_radius, ball[:2] - spring.centreline.points(spring.tip_at)[:2]
         for gap in gaps:
-            low, high = (0.0, WALL) if gap >= 0.0 else (-WALL, 0.0)
-            place = ball + (math.copysign(ball_radius, gap) + gap) * DRIVE
-            plate = place + np.array([(-half, low, -half), (half, high, half)])
+            side = math.copysign(1.0, gap)
+            corners = np.sort([(-half, 0.0, -half), (half, side * WALL, half)], axis=0)
+            plate = ball + (side * ball_radius + gap) * DRIVE + corners
             if abs(beside[0]) > abs(beside[1]):  # a ball beyond the end: the strip passes the plate
                 plate[:, 0] += math.copysign(half - 0.75 * ball_radius, beside[0])
             plates.append(plate)
@@ -187,9 +187,8 @@ def stage_of(
     plates = [box(plate) for plate in scenery.plates]
     still = [(box(corner), colour) for corner, colour in scenery.more]
     names = {**COLOURS, STRIP: scenery.strip}
-    named = [names[one] for one in [*part.tolist(), *[BALL] * len(triangles)]] + [PLATE] * sum(
-        map(len, plates)
-    )
+    named = [names[one] for one in [*part.tolist(), *[BALL] * len(triangles)]]
+    named += [PLATE for plate in plates for _ in plate]
     colours = np.array([to_rgb(one) for one in [*named, *(c for faces, c in still for _ in faces)]])
     view, dots = View.of(towards, scenery.room, size[1] / size[0]), 100
     figure = Figure(figsize=(size[0] / dots, size[1] / dots), dpi=dots)
@@ -203,11 +202,10 @@ def stage_of(
         faces = np.concatenate([scenery.placed(moment)[corners], *moved, *(one for one, _ in still)])
         places, shades = view.painted(faces, colours)
         seen.set(verts=places, facecolors=shades, edgecolors=shades)
-        rims = [
-            outline(view(one.reshape(-1, 3))) for one, on in zip(moved, moment.touched, strict=False) if on
-        ]
-        gap = np.full((1, 2), np.nan)  # no line from one rim to the next
-        edge.set_data(*np.concatenate([gap, *(part for rim in rims for part in (rim, gap))]).T)
+        rims, gap = [np.empty((0, 2))], np.full((1, 2), np.nan)  # no line from one rim to the next
+        for plate, touched in zip(moved, moment.touched, strict=False):
+            rims += [outline(view(plate.reshape(-1, 3))), gap] if touched else []
+        edge.set_data(*np.concatenate(rims).T)
         canvas.draw()
         return np.asarray(canvas.buffer_rgba(), dtype=np.uint8)[..., :3].copy()
 

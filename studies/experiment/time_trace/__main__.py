@@ -30,12 +30,12 @@ from typing import Annotated, Any
 
 from scipy.constants import g
 
-from contact import Collision
+from contact import Collision, StroboscopicMap
 from contact.orbits import born
 from studies import letter
 from studies.experiment.time_trace import film as filming
 from studies.experiment.time_trace import model as computed
-from studies.experiment.time_trace.model import WORDS, Peak, Touch, close_up, lines_of, peaks_of, trace_of
+from studies.experiment.time_trace.model import WORDS, Peak, close_up, lines_of, peaks_of, trace_of
 from studies.physics.descriptions import word
 from studies.shell.digits import written
 from studies.shell.film import MOST_FRAMES
@@ -84,7 +84,8 @@ def time_trace(
     model = model_of(scene)
     require_drive_below(scene, model, drive_hz)
     oscillator = beam_at(scene, drive_hz, model).with_excess(excess)
-    settled = born(computed.map_of(oscillator), excess, most_cycles=max(scene.scan.settle_cycles, 1))
+    kind, most = computed.SimulatedMap if scene.stops else StroboscopicMap, max(scene.scan.settle_cycles, 1)
+    settled = born(kind(oscillator=oscillator), excess, most_cycles=most)
     length = ORBIT_PERIODS * settled.period or APERIODIC
     trace = trace_of(oscillator, settled.end, length)
     # over one period of the orbit: a longer stretch only puts zeros between its lines
@@ -96,7 +97,7 @@ def time_trace(
     holds = f"time_s from a strobe on [s], tip_m [m] relative to the base, readout_{unit} [{unit}]."
     run.arrays("time_trace", holds, time_s=trace.time, tip_m=trace.tip, **{f"readout_{unit}": trace.readout})
     if scene.stops:
-        run.table("impacts", trace.impacts, "Impacts in the stretch of the figure, by stop.", of=Touch)
+        run.table("impacts", trace.impacts, "Impacts in the stretch of the figure.", of=computed.Touch)
     else:
         collided = "Collisions in the stretch of the figure; one may hold several impacts."
         run.table("collisions", trace.collisions, collided, of=Collision, show=TOLD, words=WORDS)
@@ -123,9 +124,7 @@ def time_trace(
     run.say(f"{drive_hz:g} Hz, excess {excess:g}, base {1e3 * amplitude_m:.4g} mm, {size_g:.3g} g: {name}")
     higher = sorted({peak.mode for peak in peaks if peak.mode is not None and peak.mode > 1})
     if scene.stops:
-        run.finding(
-            "The spring has several stops: impacts are listed, but no collisions, which need one stop."
-        )
+        run.finding("The spring has several stops: impacts are listed instead of collisions.")
     tell(run, settled.period, impacts, trace.collisions, higher)
     filmed = dict[str, object]()
     if film:

@@ -51,8 +51,8 @@ def draw_trace(trace: Trace, near: CloseUp | None, stops: Sequence[Stop], unit: 
         axis, place = tip if stop.at == "tip" else readout, 1e3 * stop.side * stop.gap
         axis.axhline(place, **plotting.GUIDE, label="plate")
         if len(stops) > 1:
-            beside = {"transform": axis.get_yaxis_transform(), "ha": "right", "fontsize": plotting.NOTE}
-            axis.text(0.995, place, f"plate {number}", va="top" if stop.side < 0 else "bottom", **beside)
+            beside = {"transform": axis.get_yaxis_transform(), "fontsize": plotting.NOTE, "va": "center"}
+            axis.text(1.005, place, f"plate {number}", **beside)
     if near:
         _collision(axes[:, 1], near)
     plotting.legend_below(figure, axes.flat, 5)

@@ -66,7 +66,7 @@ def film(
     enlarged = [f"higher modes are drawn {magnification:g} times larger"] if magnification > 1.0 else []
     moments = [
         Moment(points=points, base=base * DRIVE, touched=plates, lines=[words, *enlarged, *lines])
-        for points, base, plates, lines in zip(drawn, orbit.base, orbit.plates, lines_of(orbit), strict=True)
+        for points, base, plates, lines in zip(drawn, orbit.base, orbit.touched, lines_of(orbit), strict=True)
     ]
 
     def grids() -> Iterator[tuple[float, Any]]:
@@ -89,7 +89,7 @@ def lines_of(orbit: FilmedOrbit) -> Iterator[tuple[str, str]]:
     """What is written above each frame: how slow it is shown, time and tip."""
     for time, tip, slowed, touched in zip(orbit.time, orbit.tip, orbit.slowed, orbit.touched, strict=True):
         cue = ", near the impact" if slowed > CUE * orbit.slowed.min() else ""
-        place = "touches the plate" if touched else f"is at {minus(f'{1e3 * tip:.2f}')} mm"
+        place = "touches the plate" if any(touched) else f"is at {minus(f'{1e3 * tip:.2f}')} mm"
         yield (
             f"slow motion: {float(f'{slowed:.2g}'):g} times slower{cue}",
             f"at {1e3 * time:.2f} ms the ball {place}",
@@ -107,8 +107,8 @@ def strip(orbit: FilmedOrbit, trace: Trace, gaps: Sequence[float]) -> Below:
         axes.plot(1e3 * trace.time, 1e3 * trace.tip, color=BLUE)
         for gap in gaps:
             axes.axhline(1e3 * gap, **GUIDE)
-            place = {"transform": axes.get_yaxis_transform(), "va": "center"}
-            axes.text(1.0, 1e3 * gap, "plate", fontsize=NOTE, **place)
+            beside = {"transform": axes.get_yaxis_transform(), "fontsize": NOTE, "va": "center"}
+            axes.text(1.0, 1e3 * gap, "plate", **beside)
         axes.set_xlim(0.0, 1e3 * orbit.duration)
         label(axes.xaxis, "time", "ms")
         label(axes.yaxis, "ball", "mm")
@@ -119,7 +119,7 @@ def strip(orbit: FilmedOrbit, trace: Trace, gaps: Sequence[float]) -> Below:
     def marked(i: int) -> Picture:
         image = Image.fromarray(drawn)
         across, up = axes.transData.transform((1e3 * orbit.time[i], 1e3 * orbit.tip[i]))
-        colour = TOUCHED if orbit.touched[i] else "black"
+        colour = TOUCHED if any(orbit.touched[i]) else "black"
         ImageDraw.Draw(image).circle((across, image.height - up), 5, fill=colour)
         return np.asarray(image, dtype=np.uint8)
 
@@ -145,7 +145,7 @@ class FilmedOrbit:
     """One period of an orbit, arrays by frame; times from the strobe at which it begins [s].
 
     `slowed`: how many times slower than life a frame is shown; `coordinates`: modal, (n_frames, n_modes);
-    `plates`: whether each stop at the tip is touched, (n_frames, n_plates).
+    `touched`: whether each plate at the tip is, (n_frames, n_plates).
     """
 
     duration: float
@@ -155,13 +155,8 @@ class FilmedOrbit:
     slowed: Array
     tip: Array
     base: Array
-    plates: NDArray[np.bool_]
+    touched: NDArray[np.bool_]
     coordinates: Array
-
-    @property
-    def touched(self) -> NDArray[np.bool_]:
-        """Whether the ball touches a plate, shape (n_frames,)."""
-        return np.any(self.plates, axis=1)
 
 
 def frame_times(duration: float, contacts: list[tuple[float, float]], frames: int) -> Array:
@@ -187,7 +182,7 @@ def film_orbit(
 ) -> FilmedOrbit:
     """The motion from `state`, which lies at a strobe, in so many frames at `rate` a second."""
     length = period or APERIODIC
-    duration, begin = length * oscillator.period, state.time
+    duration, begin, points = length * oscillator.period, state.time, [stop.at for stop in oscillator.stops]
     whole = simulate(oscillator, state, periods=length + 1)
     felt = (whole.impacts.kind != ImpactKind.GRAZE) & (whole.impacts.start < begin + duration)
     spans = zip(whole.impacts.start[felt] - begin, whole.impacts.end[felt] - begin, strict=True)
@@ -201,9 +196,7 @@ def film_orbit(
         slowed=1.0 / (rate * np.diff(times, append=duration)),
         tip=oscillator.tip(run.displacement),
         base=oscillator.driven.displacement(times),
-        plates=np.transpose(
-            [touching(run, i) for i, stop in enumerate(oscillator.stops) if stop.at == "tip"]
-        ),
+        touched=np.transpose([touching(run, i) for i, at in enumerate(points) if at == "tip"]),
         coordinates=run.displacement,
     )
 

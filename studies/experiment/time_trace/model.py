@@ -33,9 +33,7 @@ from contact import (
     NewtonRestitution,
     PowerContact,
     State,
-    StrobedMap,
     StrobedOrbit,
-    StroboscopicMap,
     Trajectory,
     collisions,
     simulate,
@@ -129,12 +127,6 @@ class SimulatedMap:
         slowness = model.phi / np.maximum(model.omega, self.oscillator.driven.angular_frequency)
         points = np.hstack([model.phi * run.strobe_displacement, slowness * run.strobe_velocity])
         return StrobedOrbit(end=run.end, points=points, impacts=run.strobe_impacts)
-
-
-def map_of(oscillator: ImpactOscillator) -> StrobedMap[State]:
-    """The period map, compiled for one stop."""
-    kind = StroboscopicMap if len(oscillator.stops) == 1 else SimulatedMap
-    return kind(oscillator=oscillator)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -133,9 +133,7 @@ def harmonic(scene: Scene) -> Scene:
 def one_stop(scene: Scene) -> Scene:
     """The scene itself, or SceneError if it has further stops."""
     if scene.stops:
-        raise SceneError(
-            "the scene has tables [[stops]], and this needs [stop] alone: take them out of the file"
-        )
+        raise SceneError("the scene has [[stops]], and this needs [stop] alone: take them out of the file")
     return scene
 
 
@@ -172,8 +170,7 @@ def beam_at(scene: Scene, frequency: float, model: ModalModel | None = None) -> 
 
 
 def single_mode_at(scene: Scene, frequency: float) -> ImpactOscillator:
-    """Eq. (1) of the letter at drive frequency `frequency` [Hz], with the gap of the scene, which has one
-    stop."""
+    """Eq. (1) of the letter at drive frequency `frequency` [Hz], with the only gap of the scene."""
     return _on_stop(one_stop(scene), single_mode_of(scene), restitution_of(scene), frequency)
 
 

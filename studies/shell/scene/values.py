@@ -29,9 +29,6 @@ from studies.shell.scene.keys import MODE_LISTS, FurtherStopKeys
 
 T = TypeVar("T")
 
-STOPS = "stops"
-"""Name of the list of tables, one for each further stop."""
-
 USUAL_MODES = 15
 """Modes kept where neither the scene nor a study says how many are needed."""
 
@@ -73,7 +70,7 @@ class Scene:
         `stops` takes a list of tables, which replaces all of them."""
         sections: dict[str, Any] = {}
         for key, value in changes.items():
-            if key == STOPS:
+            if key == "stops":
                 sections[key] = further_stops(value)
                 continue
             section, name = split(key)
@@ -98,7 +95,7 @@ class Scene:
     def values(self) -> dict[str, Any]:
         """Nested plain values, section -> key -> value, as a file holds them."""
         tables: dict[str, Any] = {section: dataclasses.asdict(getattr(self, section)) for section in SECTIONS}
-        return tables | ({STOPS: [dataclasses.asdict(stop) for stop in self.stops]} if self.stops else {})
+        return tables | ({"stops": [dataclasses.asdict(stop) for stop in self.stops]} if self.stops else {})
 
     def provenance(self) -> dict[str, str]:
         """Dotted key -> letter, calibrated, assumed (a default), or what `replace` was told (else given)."""
@@ -121,9 +118,8 @@ class Scene:
             lines = [f"# {' '.join((table.__doc__ or '').split())}", heading]
             for entry in dataclasses.fields(table):
                 known, value = entry.metadata["key"], getattr(table, entry.name)
-                here = (
-                    "" if value == known.default else f"; here {provenance.get(section + entry.name, GIVEN)}"
-                )
+                origin = provenance.get(section + entry.name, GIVEN)
+                here = "" if value == known.default else f"; here {origin}"
                 lines += [
                     f"# {known.meaning}",
                     f"#   {known.valid()}; default {toml(known.default)}, {known.provenance}{here}",
@@ -145,7 +141,7 @@ class Scene:
 
 
 SECTIONS: tuple[str, ...] = tuple(
-    entry.name for entry in dataclasses.fields(Scene) if entry.name not in (STOPS, "origins")
+    entry.name for entry in dataclasses.fields(Scene) if entry.name not in ("stops", "origins")
 )
 KEYS: dict[str, Key] = {
     f"{section}.{entry.name}": entry.metadata["key"]
@@ -160,10 +156,8 @@ def split(key: str) -> tuple[str, str]:
     section, dot, name = key.partition(".")
     if key in KEYS:
         return section, name
-    if section.partition("[")[0] == STOPS:
-        raise SceneError(
-            f"[[stops]] is a list of tables, which {shown(key)} cannot reach: change it in the file"
-        )
+    if section.partition("[")[0] == "stops":
+        raise SceneError(f"{shown(key)} cannot reach into [[stops]], a list of tables: change the file")
     namesakes = [known for known in KEYS if known.partition(".")[2] == key.rpartition(".")[2]]
     in_section = [known for known in KEYS if known.startswith(f"{section}.")] if dot else []
     nearest = get_close_matches(key[:100], namesakes or in_section or list(KEYS), n=1, cutoff=0.0)[0]
@@ -173,16 +167,15 @@ def split(key: str) -> tuple[str, str]:
 def further_stops(tables: object) -> tuple[FurtherStopKeys, ...]:
     """The stops in the tables of [[stops]]; SceneError with the number of the table for what is wrong."""
     if not isinstance(tables, list | tuple) or not all(isinstance(table, Mapping) for table in tables):
-        raise SceneError(
-            f"stops is {shown(tables)}; it must be a list of tables, each below a line [[stops]]"
-        )
+        raise SceneError(f"stops is {shown(tables)}; it must be tables, each below a line [[stops]]")
     known = {entry.name: entry.metadata["key"] for entry in dataclasses.fields(FurtherStopKeys)}
     found = list[FurtherStopKeys]()
     for number, table in enumerate(tables, start=1):
         for name in table.keys() - known.keys():
             nearest = get_close_matches(name[:100], known, n=1, cutoff=0.0)[0]
-            words = f"there is no key {shown(name)} in [[stops]] {number}"
-            raise SceneError(f"{words}: the nearest valid key is {nearest}")
+            raise SceneError(
+                f"[[stops]] {number} has no key {shown(name)}: the nearest valid key is {nearest}"
+            )
         checked = {name: known[name].checked(f"[[stops]] {number}: {name}", table[name]) for name in table}
         found.append(FurtherStopKeys(**checked))
     return tuple(found)
@@ -200,7 +193,7 @@ def scene_from_text(
         raise SceneError(f"the scene {shown(name)} is not valid TOML: {reason}") from error
     changes: dict[str, object] = {}
     for section, entries in values.items():
-        if section == STOPS:
+        if section == "stops":
             changes[section] = entries
         elif not isinstance(entries, dict):
             split(section)
