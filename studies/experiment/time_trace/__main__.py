@@ -44,6 +44,7 @@ from studies.shell.run import Verdict
 from studies.shell.scene import Scene, beam_at, model_of, own_frequency, require_drive_below
 from studies.shell.study import Run, study
 
+NEEDS = {"tip_trace": 2e-3, "kick": 0.005, "restitution": 0.01}
 ORBIT_PERIODS = 2
 """Periods of the orbit in the figure."""
 
@@ -60,12 +61,7 @@ def conditions(scene: Scene, options: Mapping[str, Any]) -> tuple[list[float], f
     return [own_frequency(scene, letter.TIME_TRACE_HZ) if given is None else given], options["excess"]
 
 
-@study(
-    needs={"tip_trace": 2e-3, "kick": 0.005, "restitution": 0.01},
-    quick={"frames": 60},
-    at=conditions,
-    many_stops=True,
-)
+@study(needs=NEEDS, quick={"frames": 60}, at=conditions, many_stops=True)
 def time_trace(
     scene: Scene,
     run: Run,
@@ -123,9 +119,9 @@ def time_trace(
     size_g = amplitude_m * oscillator.driven.angular_frequency**2 / g
     run.say(f"{drive_hz:g} Hz, excess {excess:g}, base {1e3 * amplitude_m:.4g} mm, {size_g:.3g} g: {name}")
     higher = sorted({peak.mode for peak in peaks if peak.mode is not None and peak.mode > 1})
+    tell(run, settled.period, impacts, trace.collisions, higher)
     if scene.stops:
         run.finding("The spring has several stops: impacts are listed instead of collisions.")
-    tell(run, settled.period, impacts, trace.collisions, higher)
     filmed = dict[str, object]()
     if film:
         words = f"base shaken at {drive_hz:.4g} Hz with {1e3 * amplitude_m:.3g} mm: {repeats(settled.period)}"

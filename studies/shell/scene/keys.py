@@ -161,7 +161,7 @@ class DriveKeys:
 
 @dataclass(frozen=True, kw_only=True)
 class StopKeys:
-    """The plate, fixed to the base; each table [[stops]] adds a further one."""
+    """The plate, fixed to the base; [[stops]] with gap_m, side, at and keys of [contact] adds another."""
 
     gap_m: float = key(0.011883925614219, "m", "from the ball at rest to the plate", CALIBRATED, low=0.0)
 

@@ -92,10 +92,12 @@ class Scene:
             first, *parts = (keys.get(part, part) for part in error.args)
             raise SceneError(keys.get(error.field, first), *parts) from error
 
-    def values(self) -> dict[str, Any]:
+    def values(self) -> dict[str, object]:
         """Nested plain values, section -> key -> value, as a file holds them."""
-        tables: dict[str, Any] = {section: dataclasses.asdict(getattr(self, section)) for section in SECTIONS}
-        return tables | ({"stops": [dataclasses.asdict(stop) for stop in self.stops]} if self.stops else {})
+        tables = dataclasses.asdict(self).items()
+        return {
+            name: table for name, table in tables if name != "origins" and table
+        }  # no empty list of stops
 
     def provenance(self) -> dict[str, str]:
         """Dotted key -> letter, calibrated, assumed (a default), or what `replace` was told (else given)."""
@@ -173,9 +175,7 @@ def further_stops(tables: object) -> tuple[FurtherStopKeys, ...]:
     for number, table in enumerate(tables, start=1):
         for name in table.keys() - known.keys():
             nearest = get_close_matches(name[:100], known, n=1, cutoff=0.0)[0]
-            raise SceneError(
-                f"[[stops]] {number} has no key {shown(name)}: the nearest valid key is {nearest}"
-            )
+            raise SceneError(f"[[stops]] {number} has no key {shown(name)}: the nearest is {nearest}")
         checked = {name: known[name].checked(f"[[stops]] {number}: {name}", table[name]) for name in table}
         found.append(FurtherStopKeys(**checked))
     return tuple(found)
