@@ -95,10 +95,12 @@ class Scenery:
             mesh = solid_spring(modes, ball_radius=ball_radius, points_per_element=-(-ROWS // rows))
         plates, ball = list[Array](), mesh.points[np.unique(mesh.triangles)].mean(axis=0)
         half, beside = 2.0 * ball_radius, ball[:2] - spring.centreline.points(spring.tip_at)[:2]
+        half_strip = 0.5 * spring.sections[0].thickness
         for gap in gaps:
             side = math.copysign(1.0, gap)
+            surface = max(ball_radius, half_strip - side * beside[1])  # below the ball lies the strip
             corners = np.sort([(-half, 0.0, -half), (half, side * WALL, half)], axis=0)
-            plate = ball + (side * ball_radius + gap) * DRIVE + corners
+            plate = ball + (side * surface + gap) * DRIVE + corners
             if abs(beside[0]) > abs(beside[1]):  # a ball beyond the end: the strip passes the plate
                 plate[:, 0] += math.copysign(half - 0.75 * ball_radius, beside[0])
             plates.append(plate)
@@ -153,11 +155,12 @@ class View:
         places: Array = (points - self.centre) @ self.axes[:2].T / self.half
         return places
 
-    def painted(self, faces: Array, colours: Array) -> tuple[Array, Array]:
-        """Faces in the window and their shaded colours, (n, 4, 2) and (n, 3), the farthest first."""
+    def painted(self, faces: Array, colours: Array, away: Array | float = 0.0) -> tuple[Array, Array]:
+        """Faces in the window and their shaded colours, (n, 4, 2) and (n, 3), the farthest first; they count
+        as farther by `away` [m]."""
         normal = np.cross(faces[:, 1] - faces[:, 0], faces[:, 2] - faces[:, 0])
         light = normal @ self.axes[2] / np.maximum(np.linalg.norm(normal, axis=1), np.finfo(float).tiny)
-        order = np.argsort(faces.mean(axis=1) @ self.axes[2])
+        order = np.argsort(faces.mean(axis=1) @ self.axes[2] - away)
         order = order[light[order] > 0.0]
         steps = np.ceil(SHADES * light[order, None]) / SHADES  # a film of few colours is a small file
         return self(faces[order]), colours[order] * (0.5 + 0.5 * steps)
@@ -189,6 +192,9 @@ def stage_of(
     names = {**COLOURS, STRIP: scenery.strip}
     named = [names[one] for one in [*part.tolist(), *[BALL] * len(triangles)]]
     named += [PLATE for plate in plates for _ in plate]
+    # seen from above, a plate under the ball is behind the strip, whose faces are as wide as the strip
+    under = [plate[1, 1] < scenery.mesh.points[triangles, 1].min() for plate in scenery.plates]
+    away = np.repeat([0.0, *under, 0.0], [len(corners), *map(len, plates), sum(len(one) for one, _ in still)])
     colours = np.array([to_rgb(one) for one in [*named, *(c for faces, c in still for _ in faces)]])
     view, dots = View.of(towards, scenery.room, size[1] / size[0]), 100
     figure = Figure(figsize=(size[0] / dots, size[1] / dots), dpi=dots)
@@ -200,7 +206,7 @@ def stage_of(
     def picture(moment: Moment) -> Picture:
         moved = [plate + moment.base for plate in plates]
         faces = np.concatenate([scenery.placed(moment)[corners], *moved, *(one for one, _ in still)])
-        places, shades = view.painted(faces, colours)
+        places, shades = view.painted(faces, colours, away)
         seen.set(verts=places, facecolors=shades, edgecolors=shades)
         rims, gap = [np.empty((0, 2))], np.full((1, 2), np.nan)  # no line from one rim to the next
         for plate, touched in zip(moved, moment.touched, strict=False):
