@@ -22,8 +22,8 @@ MOST_DRAWN = 4_000
 """Points of a line: more than a page has dots."""
 
 MARK = {"color": plotting.VERMILION, "linewidth": 0.6, "linestyle": ":", "zorder": 1}
-FURTHER = {**MARK, "color": plotting.BLUE, "linestyle": "--"}
-"""Marks of the impacts on the first stop, and on any other."""
+OF_STOPS = plotting.PALETTE[2:]
+"""Colours of the marks of impacts, by the number of the stop."""
 
 
 @plotting.in_house_style
@@ -41,8 +41,8 @@ def draw_trace(trace: Trace, near: CloseUp | None, stops: Sequence[Stop], unit: 
         axis.plot(1e3 * trace.time[::step], 1e3 * shown[::step], **motion)
         axis.margins(x=0.0)
         for at, touch in zip(1e3 * trace.impact_times, trace.impacts, strict=True):
-            where, look = f" on plate {touch.stop}" if len(stops) > 1 else "", FURTHER if touch.stop else MARK
-            axis.axvline(at, **look, label=f"impact{where}")
+            where, colour = f" on plate {touch.stop}" if len(stops) > 1 else "", OF_STOPS[touch.stop % 6]
+            axis.axvline(at, **{**MARK, "color": colour}, label=f"impact{where}")
         plotting.panel(axis, number, (f"ball: {title}", "read-out point")[number])
     plotting.label(tip.yaxis, "ball", "mm")
     plotting.label(readout.yaxis, "rotation" if unit == "rad" else "read-out", f"m{unit}")
