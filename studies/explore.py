@@ -34,7 +34,7 @@ from studies.shell.executors import say
 from studies.shell.options import Parser, add_scene, tool
 from studies.shell.plotting import DOWN, EXCESS, GUIDE, INCH, PAGE, UP, house_style, points, strobe_points
 from studies.shell.programs import COMMAND, needs
-from studies.shell.scene import Scene, harmonic, model_of, read_scene
+from studies.shell.scene import Scene, harmonic, model_of, one_stop, read_scene
 
 KINDS = {"map": (61, 600), "Eq. (1)": (41, 600), "two parameters": (41, 600), "beam": (21, 200)}
 """Amplitudes of the diagram, drive periods at each: the letter's spring loses e^-16 of a motion in 200."""
@@ -134,7 +134,7 @@ class Window:
 
 def explore(given: Any) -> tuple[str, dict[str, object]]:
     """Show the window until it is closed."""
-    scene, sentence = with_restitution(harmonic(read_scene(given.scene, given.overrides)))
+    scene, sentence = with_restitution(harmonic(one_stop(read_scene(given.scene, given.overrides))))
     say(sentence)
     try:
         figure = plt.figure(figsize=(PAGE / INCH, 0.75 * PAGE / INCH), dpi=140)

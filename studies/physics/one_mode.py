@@ -22,9 +22,9 @@ def with_restitution(scene: Scene) -> tuple[Scene, str]:
     """The scene with a restitution of Eq. (1) where [single_mode] leaves it open, and a sentence on it.
 
     It is that of the first collision of the scene's model at excess 0.013 and the middle drive frequency.  It
-    stays open where mode 1 does not come back from that collision.
+    stays open where mode 1 does not come back from that collision, and of a scene with several stops.
     """
-    if scene.single_mode.restitution != OPEN or scene.drive.kind != "harmonic":
+    if scene.single_mode.restitution != OPEN or scene.drive.kind != "harmonic" or scene.stops:
         return scene, ""
     oscillator = beam_at(scene, middle_of(scene))
     if oscillator.n_modes == 1 and scene.contact.law == "newton":

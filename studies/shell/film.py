@@ -1,6 +1,6 @@
 """Films of a spring in motion, as gif and as mp4.
 
-    scenery = Scenery.of(modes, ball_radius=2.5e-3, gap=0.0119, swing=0.013)
+    scenery = Scenery.of(modes, ball_radius=2.5e-3, gaps=[0.0119], swing=0.013)
     write_film(run, "motion", "The motion.", stage_of(scenery), moments)
 
 Each moment (`studies.shell.painter`) is drawn with its lines of text above and, if wanted, a strip below.
@@ -49,11 +49,11 @@ def write_film(
             parts = [stage(moment), *([below(number)] if below else [])]
             image, last = Image.fromarray(np.concatenate(parts)), len(moment.lines) - 1
             for row, line in enumerate(moment.lines):
-                colour = TOUCHED if moment.touched and row == last else "#5A5A5A" if row else "black"
+                colour = TOUCHED if any(moment.touched) and row == last else "#5A5A5A" if row else "black"
                 ImageDraw.Draw(image).text((12, 8 + 24 * row), line, fill=colour, font=font)
             yield np.asarray(image, dtype=np.uint8)
 
-    count, touched = len(moments), [number for number, moment in enumerate(moments) if moment.touched]
+    count, touched = len(moments), [number for number, moment in enumerate(moments) if any(moment.touched)]
     samples = list(framed([0, count // 2, count - 1, *touched[:1]]))
     pictures = framed(run.track(range(count), "frames") if below else range(count))
     if below and can_encode():

@@ -1,10 +1,10 @@
-"""A spring with its ball, its plate and its base, drawn in space: a picture of one moment.
+"""A spring with its ball, its plates and its base, drawn in space: a picture of one moment.
 
-    scenery = Scenery.of(modes, ball_radius=2.5e-3, gap=0.0119, swing=0.013)
+    scenery = Scenery.of(modes, ball_radius=2.5e-3, gaps=[0.0119], swing=0.013)
     picture = stage_of(scenery)(Moment(points=displacements, base=np.zeros(3)))
 
 matplotlib draws, without any graphics library: the outer faces that look to the viewer, the farthest first,
-in parallel projection. `Moment` says where everything is, and whether the plate is touched.
+in parallel projection. `Moment` says where everything is, and which plates are touched.
 """
 
 from __future__ import annotations
@@ -58,24 +58,24 @@ PLATE, TOUCHED = "#8C9AA8", "#FF7A1A"
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Moment:
     """Displacements of the points of the mesh relative to the base, shape (n_points, 3), and of the base
-    [m]; lines of text above."""
+    [m]; whether each plate is touched; lines of text above."""
 
     points: Array
     base: Array
-    touched: bool = False
+    touched: Sequence[bool] = ()
     lines: Sequence[str] = ()
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Scenery:
-    """What is drawn: the solid spring at rest, the plate (None without one), and what holds everything.
+    """What is drawn: the solid spring at rest, the plates, and what holds everything.
 
-    `plate` and `room` are boxes, the lowest and the highest corner, shape (2, 3) [m]; `strip` is a colour,
+    `plates` and `room` are boxes, the lowest and the highest corner, shape (2, 3) [m]; `strip` is a colour,
     and `more` are boxes that stand still, with their colours.
     """
 
     mesh: SpringMesh
-    plate: Array | None
+    plates: Sequence[Array]
     room: Array
     strip: str
     more: tuple[tuple[Array, str], ...] = ()
@@ -86,26 +86,30 @@ class Scenery:
         return points
 
     @staticmethod
-    def of(modes: Modes, *, ball_radius: float, swing: float, gap: float | None = None) -> Scenery:
-        """The scenery of a spring that swings by `swing` [m], with a plate at `gap` [m] from the ball."""
+    def of(modes: Modes, *, ball_radius: float, swing: float, gaps: Sequence[float] = ()) -> Scenery:
+        """The scenery of a spring that swings by `swing` [m], with plates at `gaps` [m] from the ball, those
+        below zero on the other side."""
         mesh, spring = solid_spring(modes, ball_radius=ball_radius), modes.discretization.spring
         rows = int(np.sum(mesh.part == STRIP))
         if rows < ROWS:
             mesh = solid_spring(modes, ball_radius=ball_radius, points_per_element=-(-ROWS // rows))
-        held, plate = [mesh.points - swing * DRIVE, mesh.points + swing * DRIVE], None
-        if gap is not None:
-            ball, half = mesh.points[np.unique(mesh.triangles)].mean(axis=0), 2.0 * ball_radius
-            plate = ball + (ball_radius + gap) * DRIVE + np.array([(-half, 0.0, -half), (half, WALL, half)])
-            beside = ball[:2] - spring.centreline.points(spring.tip_at)[:2]
+        plates, ball = list[Array](), mesh.points[np.unique(mesh.triangles)].mean(axis=0)
+        half, beside = 2.0 * ball_radius, ball[:2] - spring.centreline.points(spring.tip_at)[:2]
+        half_strip = 0.5 * spring.sections[0].thickness
+        for gap in gaps:
+            side = math.copysign(1.0, gap)
+            surface = max(ball_radius, half_strip - side * beside[1])  # below the ball lies the strip
+            corners = np.sort([(-half, 0.0, -half), (half, side * WALL, half)], axis=0)
+            plate = ball + (side * surface + gap) * DRIVE + corners
             if abs(beside[0]) > abs(beside[1]):  # a ball beyond the end: the strip passes the plate
                 plate[:, 0] += math.copysign(half - 0.75 * ball_radius, beside[0])
-            held.append(plate)
-        cloud = np.concatenate(held)
+            plates.append(plate)
+        cloud = np.concatenate([mesh.points - swing * DRIVE, mesh.points + swing * DRIVE, *plates])
         room, strip = (
             np.array([cloud.min(axis=0), cloud.max(axis=0)]),
             BRASS if metal_of(spring.sections[0].material) == "brass" else OTHER,
         )
-        return Scenery(mesh=mesh, plate=plate, room=room, strip=strip)
+        return Scenery(mesh=mesh, plates=plates, room=room, strip=strip)
 
 
 def box(corners: Array, pieces: int = 8) -> Array:
@@ -151,11 +155,12 @@ class View:
         places: Array = (points - self.centre) @ self.axes[:2].T / self.half
         return places
 
-    def painted(self, faces: Array, colours: Array) -> tuple[Array, Array]:
-        """Faces in the window and their shaded colours, (n, 4, 2) and (n, 3), the farthest first."""
+    def painted(self, faces: Array, colours: Array, away: Array | float = 0.0) -> tuple[Array, Array]:
+        """Faces in the window and their shaded colours, (n, 4, 2) and (n, 3), the farthest first; they count
+        as farther by `away` [m]."""
         normal = np.cross(faces[:, 1] - faces[:, 0], faces[:, 2] - faces[:, 0])
         light = normal @ self.axes[2] / np.maximum(np.linalg.norm(normal, axis=1), np.finfo(float).tiny)
-        order = np.argsort(faces.mean(axis=1) @ self.axes[2])
+        order = np.argsort(faces.mean(axis=1) @ self.axes[2] - away)
         order = order[light[order] > 0.0]
         steps = np.ceil(SHADES * light[order, None]) / SHADES  # a film of few colours is a small file
         return self(faces[order]), colours[order] * (0.5 + 0.5 * steps)
@@ -182,10 +187,14 @@ def stage_of(
 
     (quads, part), triangles = scenery.mesh.surface(), scenery.mesh.triangles
     corners = np.concatenate([quads, triangles[:, [0, 1, 2, 2]]])
-    plate = np.empty((0, 4, 3)) if scenery.plate is None else box(scenery.plate)
+    plates = [box(plate) for plate in scenery.plates]
     still = [(box(corner), colour) for corner, colour in scenery.more]
     names = {**COLOURS, STRIP: scenery.strip}
-    named = [names[one] for one in [*part.tolist(), *[BALL] * len(triangles)]] + [PLATE] * len(plate)
+    named = [names[one] for one in [*part.tolist(), *[BALL] * len(triangles)]]
+    named += [PLATE for plate in plates for _ in plate]
+    # seen from above, a plate under the ball is behind the strip, whose faces are as wide as the strip
+    under = [plate[1, 1] < scenery.mesh.points[triangles, 1].min() for plate in scenery.plates]
+    away = np.repeat([0.0, *under, 0.0], [len(corners), *map(len, plates), sum(len(one) for one, _ in still)])
     colours = np.array([to_rgb(one) for one in [*named, *(c for faces, c in still for _ in faces)]])
     view, dots = View.of(towards, scenery.room, size[1] / size[0]), 100
     figure = Figure(figsize=(size[0] / dots, size[1] / dots), dpi=dots)
@@ -195,10 +204,14 @@ def stage_of(
     axes.axis("off")
 
     def picture(moment: Moment) -> Picture:
-        faces = [scenery.placed(moment)[corners], plate + moment.base, *(one for one, _ in still)]
-        places, shades = view.painted(np.concatenate(faces), colours)
+        moved = [plate + moment.base for plate in plates]
+        faces = np.concatenate([scenery.placed(moment)[corners], *moved, *(one for one, _ in still)])
+        places, shades = view.painted(faces, colours, away)
         seen.set(verts=places, facecolors=shades, edgecolors=shades)
-        edge.set_data(*(outline(view(faces[1].reshape(-1, 3))).T if moment.touched else ((), ())))
+        rims, gap = [np.empty((0, 2))], np.full((1, 2), np.nan)  # no line from one rim to the next
+        for plate, touched in zip(moved, moment.touched, strict=False):
+            rims += [outline(view(plate.reshape(-1, 3))), gap] if touched else []
+        edge.set_data(*np.concatenate(rims).T)
         canvas.draw()
         return np.asarray(canvas.buffer_rgba(), dtype=np.uint8)[..., :3].copy()
 
@@ -211,7 +224,7 @@ def draw_rig(
     """The spring with ball, plate and base, in true scale, displaced by modal `coordinates` [m], one row a
     position: the first as it is, the others paler and with their names."""
     radius, gap, size = scene.tip.ball_radius_m, scene.stop.gap_m, (1274, 980)
-    scenery = Scenery.of(modes, ball_radius=radius, gap=gap, swing=gap)
+    scenery = Scenery.of(modes, ball_radius=radius, gaps=[gap], swing=gap)
     mesh, wide = scenery.mesh, 1.3 * float(np.abs(scenery.mesh.points[:, 2]).max())
     base = np.array([(-0.8 * wide, -0.5 * wide, -wide), (0.1 * wide, 0.5 * wide, wide)])
     room = np.array([np.minimum(scenery.room[0], base[0]), np.maximum(scenery.room[1], base[1])])
@@ -225,7 +238,7 @@ def draw_rig(
         seen = np.where(np.all(seen == 255.0, axis=2, keepdims=True), pale, seen)
     axes.imshow(seen.astype(np.uint8), extent=(-1, 1, -1, 1), aspect="auto")
     end = int(np.argmax(view(mesh.points)[:, 0]))
-    ball, plate = mesh.points[np.unique(mesh.triangles)].mean(axis=0), np.array(scenery.plate)
+    ball, plate = mesh.points[np.unique(mesh.triangles)].mean(axis=0), scenery.plates[0]
     marks = [
         ("plate", plate.mean(axis=0), (-16, 12), "right"),
         ("base", base.mean(axis=0), (0, -42), "center"),

@@ -25,7 +25,7 @@ import threading
 import types
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, TextIO, cast
 
@@ -39,7 +39,7 @@ from studies.shell.files import SCHEMA
 from studies.shell.options import STYLES, add_options, parser_of
 from studies.shell.programs import DONE, FAILED_CELLS, INTERRUPTED, as_program, perform, run_time_of, tell
 from studies.shell.run import Run
-from studies.shell.scene import Scene, read_scene
+from studies.shell.scene import Scene, one_stop, read_scene
 
 Function = Callable[..., Mapping[str, object]]
 At = Callable[[Scene, Mapping[str, Any]], tuple[Sequence[float], float]]
@@ -50,6 +50,7 @@ def study(
     needs: Mapping[str, float] | None = None,
     quick: Mapping[str, object] | None = None,
     at: At | None = None,
+    many_stops: bool = False,
 ) -> Callable[[Function], Study]:
     """Decorator of the one function of a study.
 
@@ -62,8 +63,12 @@ def study(
         Defaults of the small form, --quick.
     at : function of scene and options
         Drive frequencies [Hz] and excess [1] at which its numbers are needed; by default of the scene.
+    many_stops : bool
+        Whether it takes a scene with [[stops]]; any other study refuses one.
     """
-    return lambda function: Study(function=function, needs=dict(needs or {}), quick=dict(quick or {}), at=at)
+    return lambda function: Study(
+        function=function, needs=dict(needs or {}), quick=dict(quick or {}), at=at, many_stops=many_stops
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -74,6 +79,7 @@ class Study:
     needs: Mapping[str, float]
     quick: Mapping[str, object]
     at: At | None = None
+    many_stops: bool = False
 
     def __call__(self, scene: Scene, run: Run, **options: object) -> Mapping[str, object]:
         """Run the function."""
@@ -107,6 +113,8 @@ class Study:
             whole = {"schema": SCHEMA, "study": self.name, **values}
             tell(whole if given["json"] else scene.dump().rstrip(), output)
             return DONE
+        if not self.many_stops:
+            one_stop(scene)
         chosen = {**self.defaults(given["quick"]), **{name: given[name] for name in options if name in given}}
         chosen = {name: tuple(v) if isinstance(v, list) else v for name, v in chosen.items()}
         for sentence in doubtful:
@@ -149,7 +157,9 @@ class Study:
                 warnings.simplefilter("ignore", SuspiciousValue)
                 asked = self.at(run.scene, options) if self.at else ()
                 if self.needs:
-                    run.choose_modes(*least_modes(run.scene, self.needs, *asked))
+                    alone = replace(run.scene, stops=())  # modes are chosen with the plate of [stop] alone
+                    chosen, why = least_modes(alone, self.needs, *asked)
+                    run.choose_modes(replace(chosen, stops=run.scene.stops), why)
                 scene = run.adopt(*with_restitution(run.scene))
                 for sentence in doubts(scene):
                     run.warn(sentence)

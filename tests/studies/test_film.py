@@ -31,19 +31,21 @@ def modes(scene):
 
 def test_the_drawn_ball_meets_the_drawn_plate_when_the_tip_has_moved_by_the_gap(scene, modes):
     gap, radius = scene.stop.gap_m, scene.tip.ball_radius_m
-    scenery = Scenery.of(modes, ball_radius=radius, gap=gap, swing=gap)
+    scenery = Scenery.of(modes, ball_radius=radius, gaps=[gap, -0.5 * gap], swing=gap)
     ball = scenery.mesh.points[np.unique(scenery.mesh.triangles)]
-    low, high = scenery.plate
+    (low, high), (_, other) = scenery.plates
     # the sphere is a polyhedron
     assert low[1] - ball[:, 1].max() == pytest.approx(gap, abs=0.02 * radius)
+    under = ball[:, 1].min() - scene.spring.thickness_m  # the ball lies on the strip, which meets this plate
+    assert under - other[1] == pytest.approx(0.5 * gap, abs=0.02 * radius)
     assert low[0] < ball[:, 0].mean() < high[0]
-    assert Scenery.of(modes, ball_radius=radius, swing=gap).plate is None
+    assert not Scenery.of(modes, ball_radius=radius, swing=gap).plates
     assert scenery.strip == painter.BRASS
     assert [*map(metal_of, (BRASS, STEEL, DAMPING_TAPE))] == ["brass", "steel", ""]
 
 
 def test_higher_modes_are_enlarged_and_the_tip_stays_where_it_is(scene, modes):
-    scenery = Scenery.of(modes, ball_radius=scene.tip.ball_radius_m, gap=0.01, swing=0.01)
+    scenery = Scenery.of(modes, ball_radius=scene.tip.ball_radius_m, gaps=[0.01], swing=0.01)
     coordinates = np.random.default_rng(1).normal(scale=[1e-3, 1e-4, 1e-5, 1e-5], size=(5, 4))
     tip = coordinates @ modes.phi[modes.coupled][:4]
     ball = np.unique(scenery.mesh.triangles)
@@ -61,22 +63,23 @@ def test_the_frames_of_an_orbit_show_its_contact(scene):
     settled = born(StroboscopicMap(oscillator=oscillator), 0.013)
     orbit = film_orbit(oscillator, settled.end, settled.period, frames=80, rate=20.0)
     assert settled.period == 4 and len(orbit.contacts) == settled.impacts >= 1
-    assert orbit.touched.any() and np.all(orbit.tip[orbit.touched] >= oscillator.stop.gap * (1 - 1e-12))
-    assert orbit.slowed[orbit.touched].min() > 20.0 * orbit.slowed.min()
+    touched = orbit.touched[:, 0]
+    assert touched.any() and np.all(orbit.tip[touched] >= oscillator.stop.gap * (1 - 1e-12))
+    assert orbit.slowed[touched].min() > 20.0 * orbit.slowed.min()
     assert np.all(np.diff(orbit.time) > 0.0)
     assert orbit.base == pytest.approx(oscillator.drive.displacement(orbit.time))
 
 
 def test_a_picture_shows_what_moves(scene, modes):
-    scenery = Scenery.of(modes, ball_radius=scene.tip.ball_radius_m, gap=0.01, swing=0.01)
+    scenery = Scenery.of(modes, ball_radius=scene.tip.ball_radius_m, gaps=[0.01, -0.01], swing=0.01)
     rest = Moment(points=np.zeros_like(scenery.mesh.points), base=np.zeros(3))
     swung = Moment(points=scenery.mesh.normalised(0.008)[0], base=np.zeros(3))
-    touched = Moment(points=rest.points, base=rest.base, touched=True)
+    touched, other = (Moment(points=rest.points, base=rest.base, touched=on) for on in ([1, 0], [0, 1]))
     stage = stage_of(scenery)
-    pictures = [stage(moment) for moment in (rest, swung, touched, rest)]
+    pictures = [stage(moment) for moment in (rest, swung, touched, other, rest)]
     assert {picture.shape for picture in pictures} == {(painter.HEIGHT, painter.WIDTH, 3)}
-    assert (pictures[0] == pictures[3]).all()
-    for other in pictures[1:3]:
+    assert (pictures[0] == pictures[4]).all()
+    for other in pictures[1:4]:
         assert 50 < np.any(pictures[0] != other, axis=2).sum() < 0.5 * painter.WIDTH * painter.HEIGHT
     # nothing is cut off: the border is white
     for picture in pictures:

@@ -16,6 +16,7 @@ from hypothesis import strategies as st
 
 import beam
 from beam import SuspiciousValue
+from contact import NewtonRestitution
 from studies.shell.scene import SCENES, Scene, SceneError, beam_at, check, hertz_of, model_of, read_scene
 from studies.shell.scene.keys import MODE_LISTS
 from studies.shell.scene.values import KEYS, parse_override, scene_from_text
@@ -233,6 +234,33 @@ def test_an_override_needs_a_dotted_key_and_a_value(text):
 def test_the_last_override_wins_and_no_drive_needs_no_gap():
     assert read_scene("letter", ["stop.gap_m=0.011", "stop.gap_m=0.012"]).stop.gap_m == 0.012
     assert read_scene("letter", ["drive.kind=none", "stop.gap_m=0"]).stop.gap_m == 0.0
+
+
+FURTHER = {
+    "gap_m = 0.012": "",
+    'gap_m = 0.02\nside = 1\nat = "readout"\nlaw = "newton"\nlocal_restitution = 0.5': "",
+    "gap = 0.012": "[[stops]] 1 has no key 'gap': the nearest is gap_m",
+    "gap_m = 'wide'": "[[stops]] 1: gap_m must be a finite number",
+    "side = 0": "[[stops]] 1: side is 0 [1]; it must be +1 or -1",
+    "at = 'middle'": '[[stops]] 1: at must be one of "tip", "readout"',
+    "side = 1": "which lie at one place",
+    "at = 'readout'": "[[stops]] 1: at is readout, whose quantity is a rotation",
+}
+
+
+@pytest.mark.parametrize("table", FURTHER)
+def test_further_stops_are_read_dumped_or_refused(table, tmp_path: Path):
+    own = tmp_path / "own.toml"
+    own.write_text(f"{(SCENES / 'letter.toml').read_text()}\n[[stops]]\n{table}")
+    if FURTHER[table]:
+        assert FURTHER[table] in refusal("readout.quantity=rotation", scene=str(own))
+        return
+    scene = read_scene(own)
+    assert scene_from_text(scene.dump()) == scene != scene.replace({"stops": []}) == read_scene()
+    (plate, further), keys = beam_at(scene.replace({"modes.count": 3}), 22.2).stops, scene.stops[0]
+    assert (further.gap, further.at, further.side) == (keys.gap_m, keys.at, keys.side)
+    assert further.law == (NewtonRestitution(local_restitution=0.5) if keys.law == "newton" else plate.law)
+    assert "cannot reach into [[stops]]" in refusal("stops.gap_m=0.01", scene=str(own))
 
 
 def test_files_that_cannot_be_read(tmp_path: Path):

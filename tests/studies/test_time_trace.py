@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from contact import Collision, first_collision
+from contact import Collision, StroboscopicMap, first_collision
 from contact.collision import before_collision
+from contact.orbits import born
 from studies.experiment.time_trace.film import strip
-from studies.experiment.time_trace.model import WORDS, close_up
+from studies.experiment.time_trace.model import WORDS, SimulatedMap, close_up
 from studies.shell.painter import WIDTH
 from studies.shell.plotting import style_of
 from studies.shell.scene import beam_at, single_mode_of
@@ -47,10 +48,10 @@ def test_the_orbit_of_figure_4_the_ringing_of_its_impact_and_its_film(run_study)
 
 
 def test_the_strip_of_a_film_has_one_size_in_every_style():
-    orbit, trace = SimpleNamespace(duration=0.1, time=[0.05], tip=[0.01], touched=[True]), np.ones(2)
+    orbit, trace = SimpleNamespace(duration=0.1, time=[0.05], tip=[0.01], touched=[[True]]), np.ones(2)
     for name in ("paper", "slide"):
         with style_of(name):
-            assert strip(orbit, SimpleNamespace(time=trace, tip=trace), 0.01)(0).shape[1] == WIDTH
+            assert strip(orbit, SimpleNamespace(time=trace, tip=trace), [0.01])(0).shape[1] == WIDTH
 
 
 def test_below_grazing_there_is_no_impact_and_one_line(run_study, letter_scene):
@@ -64,6 +65,42 @@ def test_below_grazing_there_is_no_impact_and_one_line(run_study, letter_scene):
     size = (2.0 * np.pi * 21.5) ** 2 * base / 9.80665
     told = found["drive_amplitude_m"], found["drive_acceleration_g"]
     assert told == pytest.approx((base, size), rel=1e-6)
+
+
+COARSE = (
+    "spring = {elements_per_leg = 20, elements_on_arc = 12}\nmodes.count = 4\ndrive.frequencies_hz = [21.5]"
+)
+
+
+def test_a_spring_between_two_plates_touches_both(run_study, tmp_path):
+    scene = tmp_path / "two_sides.toml"
+    scene.write_text(f"{COARSE}\n[[stops]]\ngap_m = 0.012")
+    options = "--quick", "--excess", "0.01", "--scene", str(scene), "--film", "--frames", "4"
+    ran = run_study("time_trace", *options)
+    summary, (time, tip) = ran.summary, (ran.arrays("time_trace")[name] for name in ("time_s", "tip_m"))
+    assert (ran.code, summary["period"], summary["impacts"], summary["letter"]) == (0, 7, 2, None)
+    assert [row["stop"] for row in summary["rows"]] == [int(row["stop"]) for row in ran.rows("impacts")]
+    assert {row["stop"] for row in summary["rows"]} == {0, 1} and len(summary["rows"]) == 4
+    assert all(row["approach"] > 0.0 > row["rebound"] > -row["approach"] for row in summary["rows"])
+    begin = summary["rows"][0]["start"] - summary["impact_times_s"][0]
+    for stop, gap in enumerate((0.011883925614219, -0.012)):
+        past = begin + time[tip / gap > 1.0]
+        spans = [(row["start"], row["end"]) for row in summary["rows"] if row["stop"] == stop]
+        inside = [(first <= past) & (past <= last) for first, last in spans]
+        assert past.size and np.all(np.any(inside, axis=0))
+    assert not (ran.folder / "collisions.csv").exists()
+    assert run_study("transitions", "--scene", str(scene)).code == 2
+
+
+def test_the_simulated_map_is_the_period_map_of_one_stop(letter_scene):
+    oscillator = beam_at(letter_scene.replace({"modes.count": 3}), 21.5).with_excess(0.013)
+    simulated, compiled = SimulatedMap(oscillator=oscillator), StroboscopicMap(oscillator=oscillator)
+    start = simulated.steady()
+    found, expected = simulated.orbit(start, 60), compiled.orbit(start, 60)
+    assert found.impacts.tolist() == expected.impacts.tolist() and found.impacts.sum() > 5
+    np.testing.assert_allclose(found.points, expected.points, atol=1e-9 * simulated.scale)
+    settled = [born(each, 0.013) for each in (simulated, compiled)]
+    assert settled[0].period == settled[1].period > 1 and settled[0].impacts == settled[1].impacts
 
 
 def driven(scene, law, excess):

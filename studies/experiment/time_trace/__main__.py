@@ -12,12 +12,14 @@ Computed, at 21.50 Hz, where the letter's p1 goes over into p4:
     spectrum         amplitudes of the read-out at the multiples of 1/(orbit period)
 
 The figure says so where a motion has no period up to 64 drive periods; its spectrum then has leakage.
+A scene may have several stops, [[stops]]: then impacts are listed by stop in place of collisions, and no
+close-up is drawn.
 
 With --film the orbit is filmed, slow at the collision, seen in space (`film`).
 
 Run:     python -m studies time_trace [--excess E] [--frequency HZ] [--film]
-Writes:  time_trace.npz, collisions.csv, spectrum.npz, peaks.csv, time_trace.png, spectrum.png; with --film
-         motion.gif, motion.mp4 (extra `video`) and motion.pvd for ParaView
+Writes:  time_trace.npz, collisions.csv or impacts.csv, spectrum.npz, peaks.csv, time_trace.png, spectrum.png;
+         with --film motion.gif, motion.mp4 (extra `video`) and motion.pvd for ParaView
 """
 
 from __future__ import annotations
@@ -32,6 +34,7 @@ from contact import Collision, StroboscopicMap
 from contact.orbits import born
 from studies import letter
 from studies.experiment.time_trace import film as filming
+from studies.experiment.time_trace import model as computed
 from studies.experiment.time_trace.model import WORDS, Peak, close_up, lines_of, peaks_of, trace_of
 from studies.physics.descriptions import word
 from studies.shell.digits import written
@@ -41,6 +44,7 @@ from studies.shell.run import Verdict
 from studies.shell.scene import Scene, beam_at, model_of, own_frequency, require_drive_below
 from studies.shell.study import Run, study
 
+NEEDS = {"tip_trace": 2e-3, "kick": 0.005, "restitution": 0.01}
 ORBIT_PERIODS = 2
 """Periods of the orbit in the figure."""
 
@@ -57,7 +61,7 @@ def conditions(scene: Scene, options: Mapping[str, Any]) -> tuple[list[float], f
     return [own_frequency(scene, letter.TIME_TRACE_HZ) if given is None else given], options["excess"]
 
 
-@study(needs={"tip_trace": 2e-3, "kick": 0.005, "restitution": 0.01}, quick={"frames": 60}, at=conditions)
+@study(needs=NEEDS, quick={"frames": 60}, at=conditions, many_stops=True)
 def time_trace(
     scene: Scene,
     run: Run,
@@ -76,8 +80,8 @@ def time_trace(
     model = model_of(scene)
     require_drive_below(scene, model, drive_hz)
     oscillator = beam_at(scene, drive_hz, model).with_excess(excess)
-    strobed, most = StroboscopicMap(oscillator=oscillator), max(scene.scan.settle_cycles, 1)
-    settled = born(strobed, excess, most_cycles=most)
+    kind, most = computed.SimulatedMap if scene.stops else StroboscopicMap, max(scene.scan.settle_cycles, 1)
+    settled = born(kind(oscillator=oscillator), excess, most_cycles=most)
     length = ORBIT_PERIODS * settled.period or APERIODIC
     trace = trace_of(oscillator, settled.end, length)
     # over one period of the orbit: a longer stretch only puts zeros between its lines
@@ -88,8 +92,11 @@ def time_trace(
     unit = "rad" if scene.readout.quantity == "rotation" else "m"
     holds = f"time_s from a strobe on [s], tip_m [m] relative to the base, readout_{unit} [{unit}]."
     run.arrays("time_trace", holds, time_s=trace.time, tip_m=trace.tip, **{f"readout_{unit}": trace.readout})
-    collided = "Collisions in the stretch of the figure; one may hold several impacts."
-    run.table("collisions", trace.collisions, collided, of=Collision, show=TOLD, words=WORDS)
+    if scene.stops:
+        run.table("impacts", trace.impacts, "Impacts in the stretch of the figure.", of=computed.Touch)
+    else:
+        collided = "Collisions in the stretch of the figure; one may hold several impacts."
+        run.table("collisions", trace.collisions, collided, of=Collision, show=TOLD, words=WORDS)
     holds = f"Lines of the spectrum: frequency_hz [Hz] and amplitude_{unit} of the read-out [{unit}]."
     run.arrays("spectrum", holds, frequency_hz=lines_hz, **{f"amplitude_{unit}": amplitude})
     peaked = {"amplitude": f"amplitude of the read-out [{unit}]"}
@@ -100,7 +107,7 @@ def time_trace(
     near = close_up(oscillator, settled.end, trace.collisions[0]) if trace.collisions else None
     run.figure(
         "time_trace",
-        draw_trace(trace, near, scene.stop.gap_m, unit, f"{name}, {drive_hz:.2f} Hz"),
+        draw_trace(trace, near, oscillator.stops, unit, f"{name}, {drive_hz:.2f} Hz"),
         "Ball and read-out point of the settled motion against time, and a collision from close by.",
     )
     run.figure(
@@ -113,6 +120,8 @@ def time_trace(
     run.say(f"{drive_hz:g} Hz, excess {excess:g}, base {1e3 * amplitude_m:.4g} mm, {size_g:.3g} g: {name}")
     higher = sorted({peak.mode for peak in peaks if peak.mode is not None and peak.mode > 1})
     tell(run, settled.period, impacts, trace.collisions, higher)
+    if scene.stops:
+        run.finding("The spring has several stops: impacts are listed instead of collisions.")
     filmed = dict[str, object]()
     if film:
         words = f"base shaken at {drive_hz:.4g} Hz with {1e3 * amplitude_m:.3g} mm: {repeats(settled.period)}"
@@ -121,7 +130,7 @@ def time_trace(
     if seen == letter.PERIODS[letter.TIME_TRACE_HZ]:
         judge(run, name, seen, trace.collisions, higher)
     return {
-        "rows": trace.collisions,
+        "rows": trace.impacts if scene.stops else trace.collisions,
         "frequency_hz": drive_hz,
         "excess": excess,
         "drive_amplitude_m": amplitude_m,

@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from contact import Stop
 from studies.experiment.time_trace.model import CloseUp, Trace
 from studies.shell import plotting
 
@@ -21,10 +22,12 @@ MOST_DRAWN = 4_000
 """Points of a line: more than a page has dots."""
 
 MARK = {"color": plotting.VERMILION, "linewidth": 0.6, "linestyle": ":", "zorder": 1}
+OF_STOPS = plotting.PALETTE[2:]
+"""Colours of the marks of impacts, by the number of the stop."""
 
 
 @plotting.in_house_style
-def draw_trace(trace: Trace, near: CloseUp | None, gap: float, unit: str, title: str) -> Figure:
+def draw_trace(trace: Trace, near: CloseUp | None, stops: Sequence[Stop], unit: str, title: str) -> Figure:
     """Tip and read-out against time, impacts marked, and one collision beside them; `unit` is m or rad."""
     shared: plotting.Style = {
         "sharex": "col",
@@ -37,13 +40,22 @@ def draw_trace(trace: Trace, near: CloseUp | None, gap: float, unit: str, title:
         motion: plotting.Style = {"color": plotting.BLUE, "linewidth": 0.8, "label": "motion"}
         axis.plot(1e3 * trace.time[::step], 1e3 * shown[::step], **motion)
         axis.margins(x=0.0)
-        for at in 1e3 * trace.impact_times:
-            axis.axvline(at, **MARK, label="impact")
+        for at, touch in zip(1e3 * trace.impact_times, trace.impacts, strict=True):
+            where, colour = (
+                f" on plate {touch.stop}" if len(stops) > 1 else "",
+                OF_STOPS[touch.stop % len(OF_STOPS)],
+            )
+            axis.axvline(at, **{**MARK, "color": colour}, label=f"impact{where}")
         plotting.panel(axis, number, (f"ball: {title}", "read-out point")[number])
     plotting.label(tip.yaxis, "ball", "mm")
     plotting.label(readout.yaxis, "rotation" if unit == "rad" else "read-out", f"m{unit}")
     plotting.label(readout.xaxis, "time", "ms")
-    tip.axhline(1e3 * gap, **plotting.GUIDE, label="plate")
+    for number, stop in enumerate(stops):
+        axis, place = tip if stop.at == "tip" else readout, 1e3 * stop.side * stop.gap
+        axis.axhline(place, **plotting.GUIDE, label="plate")
+        if len(stops) > 1:
+            beside = {"transform": axis.get_yaxis_transform(), "fontsize": plotting.NOTE, "va": "center"}
+            axis.text(1.005, place, f"plate {number}", **beside)
     if near:
         _collision(axes[:, 1], near)
     plotting.legend_below(figure, axes.flat, 5)

@@ -22,7 +22,7 @@ The departure leaves the tip where it is: with any M the ball meets the plate wh
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -57,17 +57,16 @@ def film(
     frames: int,
 ) -> Mapping[str, object]:
     """Film one period of a settled orbit; returns what the summary keeps of it."""
-    modes, gap, radius = modes_of(scene), scene.stop.gap_m, scene.tip.ball_radius_m
+    modes, radius = modes_of(scene), scene.tip.ball_radius_m
+    gaps = [stop.side * stop.gap for stop in oscillator.stops if stop.at == "tip"]
     orbit = film_orbit(oscillator, settled.end, settled.period, frames=frames, rate=RATE)
-    scenery = Scenery.of(modes, ball_radius=radius, gap=gap, swing=float(np.abs(orbit.tip).max()))
+    scenery = Scenery.of(modes, ball_radius=radius, gaps=gaps, swing=float(np.abs(orbit.tip).max()))
     drawn, magnification = drawn_shapes(scenery.mesh, modes, orbit.coordinates)
     true, _ = drawn_shapes(scenery.mesh, modes, orbit.coordinates, 1.0)
     enlarged = [f"higher modes are drawn {magnification:g} times larger"] if magnification > 1.0 else []
     moments = [
-        Moment(points=points, base=base * DRIVE, touched=bool(touched), lines=[words, *enlarged, *lines])
-        for points, base, touched, lines in zip(
-            drawn, orbit.base, orbit.touched, lines_of(orbit), strict=True
-        )
+        Moment(points=points, base=base * DRIVE, touched=plates, lines=[words, *enlarged, *lines])
+        for points, base, plates, lines in zip(drawn, orbit.base, orbit.touched, lines_of(orbit), strict=True)
     ]
 
     def grids() -> Iterator[tuple[float, Any]]:
@@ -82,7 +81,7 @@ def film(
     slow = f"{orbit.slowed.min():.0f} to {orbit.slowed.max():.0f} times slower than life"
     run.say(f"{words}: {len(orbit.contacts)} contacts, {slow}")
     holds = "One period of the orbit, slow at the collision; below, the ball against time."
-    write_film(run, "motion", holds, stage_of(scenery), moments, below=strip(orbit, trace, gap))
+    write_film(run, "motion", holds, stage_of(scenery), moments, below=strip(orbit, trace, gaps))
     return {"contacts_s": orbit.contacts, "magnification": magnification}
 
 
@@ -90,14 +89,14 @@ def lines_of(orbit: FilmedOrbit) -> Iterator[tuple[str, str]]:
     """What is written above each frame: how slow it is shown, time and tip."""
     for time, tip, slowed, touched in zip(orbit.time, orbit.tip, orbit.slowed, orbit.touched, strict=True):
         cue = ", near the impact" if slowed > CUE * orbit.slowed.min() else ""
-        place = "touches the plate" if touched else f"is at {minus(f'{1e3 * tip:.2f}')} mm"
+        place = "touches the plate" if any(touched) else f"is at {minus(f'{1e3 * tip:.2f}')} mm"
         yield (
             f"slow motion: {float(f'{slowed:.2g}'):g} times slower{cue}",
             f"at {1e3 * time:.2f} ms the ball {place}",
         )
 
 
-def strip(orbit: FilmedOrbit, trace: Trace, gap: float) -> Below:
+def strip(orbit: FilmedOrbit, trace: Trace, gaps: Sequence[float]) -> Below:
     """The tip against time, as it stands below a frame, with a mark at the time of the frame."""
     from PIL import Image, ImageDraw
 
@@ -106,8 +105,10 @@ def strip(orbit: FilmedOrbit, trace: Trace, gap: float) -> Below:
     with house_style(), style_of("paper"):
         figure, axes = new_figure(width=WIDTH / DOTS * INCH, height=150 / DOTS * INCH)
         axes.plot(1e3 * trace.time, 1e3 * trace.tip, color=BLUE)
-        axes.axhline(1e3 * gap, **GUIDE)
-        axes.text(1.0, 1e3 * gap, "plate", transform=axes.get_yaxis_transform(), fontsize=NOTE, va="center")
+        for gap in gaps:
+            axes.axhline(1e3 * gap, **GUIDE)
+            beside = {"transform": axes.get_yaxis_transform(), "fontsize": NOTE, "va": "center"}
+            axes.text(1.0, 1e3 * gap, "plate", **beside)
         axes.set_xlim(0.0, 1e3 * orbit.duration)
         label(axes.xaxis, "time", "ms")
         label(axes.yaxis, "ball", "mm")
@@ -118,7 +119,7 @@ def strip(orbit: FilmedOrbit, trace: Trace, gap: float) -> Below:
     def marked(i: int) -> Picture:
         image = Image.fromarray(drawn)
         across, up = axes.transData.transform((1e3 * orbit.time[i], 1e3 * orbit.tip[i]))
-        colour = TOUCHED if orbit.touched[i] else "black"
+        colour = TOUCHED if any(orbit.touched[i]) else "black"
         ImageDraw.Draw(image).circle((across, image.height - up), 5, fill=colour)
         return np.asarray(image, dtype=np.uint8)
 
@@ -143,7 +144,8 @@ seen."""
 class FilmedOrbit:
     """One period of an orbit, arrays by frame; times from the strobe at which it begins [s].
 
-    `slowed`: how many times slower than life a frame is shown; `coordinates`: modal, (n_frames, n_modes).
+    `slowed`: how many times slower than life a frame is shown; `coordinates`: modal, (n_frames, n_modes);
+    `touched`: whether each plate at the tip is, (n_frames, n_plates).
     """
 
     duration: float
@@ -180,7 +182,7 @@ def film_orbit(
 ) -> FilmedOrbit:
     """The motion from `state`, which lies at a strobe, in so many frames at `rate` a second."""
     length = period or APERIODIC
-    duration, begin = length * oscillator.period, state.time
+    duration, begin, points = length * oscillator.period, state.time, [stop.at for stop in oscillator.stops]
     whole = simulate(oscillator, state, periods=length + 1)
     felt = (whole.impacts.kind != ImpactKind.GRAZE) & (whole.impacts.start < begin + duration)
     spans = zip(whole.impacts.start[felt] - begin, whole.impacts.end[felt] - begin, strict=True)
@@ -194,7 +196,7 @@ def film_orbit(
         slowed=1.0 / (rate * np.diff(times, append=duration)),
         tip=oscillator.tip(run.displacement),
         base=oscillator.driven.displacement(times),
-        touched=touching(run),
+        touched=np.transpose([touching(run, i) for i, at in enumerate(points) if at == "tip"]),
         coordinates=run.displacement,
     )
 

@@ -2,7 +2,8 @@
 
     N = k d + c d'  (linear),   N = k d^(3/2) (1 + chi d')  (Hertz: chi = 0),   at depth d [m], rate d' [m/s]
 
-A law of restitution has no force: not a number.
+A law of restitution has no force: not a number. Between several stops the touches are listed instead of
+collisions, which are those of one stop.
 
 The spectrum: a signal of period P, sampled over a whole number of periods, is a sum of lines at the multiples
 of 1/P,
@@ -14,7 +15,7 @@ and the discrete Fourier transform gives a_j without leakage and without a windo
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Annotated
 
 import numpy as np
@@ -32,6 +33,7 @@ from contact import (
     NewtonRestitution,
     PowerContact,
     State,
+    StrobedOrbit,
     Trajectory,
     collisions,
     simulate,
@@ -79,7 +81,52 @@ class Trace:
     tip: Array
     readout: Array
     impact_times: Array
+    impacts: list[Touch]
     collisions: list[Collision]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Touch:
+    """An impact on one of the stops; the fields are those of `contact.Impacts`."""
+
+    stop: Annotated[int, "number of the stop; 0 is that of [stop]"]
+    start: Annotated[float, "time of the touch [s]"]
+    end: Annotated[float, "time of the release [s]"]
+    approach: Annotated[float, "velocity towards the stop at the touch [m/s]"]
+    rebound: Annotated[float, "velocity towards the stop at the release [m/s]"]
+    peak_force: Annotated[float, "largest contact force [N]; none under Newton's law"]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SimulatedMap:
+    """The period map of a spring with several stops.
+
+    Its points are phi_k q_k and phi_k q_k'/omega_k [m], with the drive's omega for slower modes.
+    """
+
+    oscillator: ImpactOscillator
+
+    @property
+    def scale(self) -> float:
+        """The narrowest gap [m]."""
+        return min(stop.gap for stop in self.oscillator.stops)
+
+    def at(self, excess: float) -> SimulatedMap:
+        """The same spring at another excess [1]."""
+        return SimulatedMap(oscillator=self.oscillator.with_excess(excess))
+
+    def steady(self) -> State:
+        """The steady motion at a strobe, as it would be without stops."""
+        drive = self.oscillator.driven
+        steady = drive.amplitude * self.oscillator.steady_response()
+        return State(displacement=steady.imag, velocity=drive.angular_frequency * steady.real)
+
+    def orbit(self, state: State, count: int) -> StrobedOrbit[State]:
+        """`count` drive periods from `state`."""
+        run, model = simulate(self.oscillator, state, periods=count), self.oscillator.model
+        slowness = model.phi / np.maximum(model.omega, self.oscillator.driven.angular_frequency)
+        points = np.hstack([model.phi * run.strobe_displacement, slowness * run.strobe_velocity])
+        return StrobedOrbit(end=run.end, points=points, impacts=run.strobe_impacts)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -98,13 +145,16 @@ def trace_of(oscillator: ImpactOscillator, state: State, length: int) -> Trace:
     begin, span = state.time, length * oscillator.period
     time = span * np.arange(length * PER_PERIOD) / (length * PER_PERIOD)
     run = simulate(oscillator, state, periods=length + 2, times=begin + time)
-    touches = run.impacts.start[(run.impacts.kind == ImpactKind.IMPACT) & (run.impacts.start < begin + span)]
-    final = collisions(run, unfinished="drop")
+    impacts, names = run.impacts, [field.name for field in fields(Touch)]
+    felt = (impacts.kind == ImpactKind.IMPACT) & (impacts.start < begin + span)
+    columns = [getattr(impacts, name)[felt].tolist() for name in names]
+    final = [] if len(oscillator.stops) > 1 else collisions(run, unfinished="drop")
     return Trace(
         time=time,
         tip=oscillator.tip(run.displacement),
         readout=run.displacement @ oscillator.model.points[READOUT].row,
-        impact_times=touches - begin,
+        impact_times=impacts.start[felt] - begin,
+        impacts=[Touch(**dict(zip(names, row, strict=True))) for row in zip(*columns, strict=True)],
         collisions=[collision for collision in final if collision.first_touch < begin + span],
     )
 
@@ -126,9 +176,9 @@ def close_up(oscillator: ImpactOscillator, state: State, collision: Collision) -
     )
 
 
-def touching(run: Trajectory) -> NDArray[np.bool_]:
-    """Whether tip and plate touch at the samples of a trajectory, shape (n_samples,)."""
-    begin, end = run.impacts.start, run.impacts.end
+def touching(run: Trajectory, stop: int = 0) -> NDArray[np.bool_]:
+    """Whether the stop with this number is touched at the samples of a trajectory, shape (n_samples,)."""
+    begin, end = (times[run.impacts.stop == stop] for times in (run.impacts.start, run.impacts.end))
     inside: NDArray[np.bool_] = np.any((run.time[:, None] >= begin) & (run.time[:, None] <= end), axis=1)
     return inside
 

@@ -13,8 +13,9 @@ brings a `SuspiciousValue` warning. Reading a scene solves no eigenvalue problem
 
 from __future__ import annotations
 
+import dataclasses
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 from beam import Backbone, ModalModel, Refusal, suspect
@@ -82,8 +83,8 @@ def read_scene(name: str | Path = "letter", overrides: Iterable[str] = ()) -> Sc
     scene = scene_from_text(text, name=str(path), overrides=overrides, folder=path.parent)
     check(scene)
     scene = with_first_mode(scene)
-    law = contact_law_of(scene)
-    ImpactOscillator(model=single_mode_of(scene), stop=Stop(gap=scene.stop.gap_m, law=law))
+    stops = [Stop(gap=scene.stop.gap_m, law=contact_law_of(scene)), *further_stops_of(scene)]
+    scene.make(ImpactOscillator, {}, model=single_mode_of(scene), stops=stops)
     for sentence in doubts(scene):
         suspect(sentence)
     return scene
@@ -100,6 +101,7 @@ def check(scene: Scene) -> None:
         gap, least = scene.stop.gap_m, SMALLEST_GAP
         raise SceneError(f"stop.gap_m must be at least {least:g} (unit m) when there is a drive, not {gap:g}")
     scene.make(Stop, {"gap": "stop.gap_m"}, law=contact_law_of(scene))
+    further_stops_of(scene)
     for frequency in scene.drive.frequencies_hz:
         scene.make(HarmonicDrive, {"frequency": "drive.frequencies_hz"}, frequency=frequency)
     if scene.single_mode.restitution != OPEN:
@@ -128,23 +130,48 @@ def harmonic(scene: Scene) -> Scene:
     return scene
 
 
-def _on_stop(scene: Scene, model: ModalModel, law: ContactLaw, frequency: float) -> ImpactOscillator:
+def one_stop(scene: Scene) -> Scene:
+    """The scene itself, or SceneError if it has further stops."""
+    if scene.stops:
+        raise SceneError("the scene has [[stops]], and this needs [stop] alone: take them out of the file")
+    return scene
+
+
+def further_stops_of(scene: Scene) -> list[Stop]:
+    """The stops of [[stops]], each with the law of [contact] or its own."""
+    found = []
+    for number, keys in enumerate(scene.stops, start=1):
+        own = scene if keys.law == "contact" else dataclasses.replace(scene, stop=keys, contact=keys)
+        try:
+            if keys.at == READOUT and scene.readout.quantity == "rotation":
+                raise SceneError("at is readout, whose quantity is a rotation; a stop needs a displacement")
+            found.append(Stop(gap=keys.gap_m, law=contact_law_of(own), at=keys.at, side=keys.side))
+        except Refusal as error:
+            raise SceneError(f"[[stops]] {number}: {error}") from error
+    return found
+
+
+def _on_stop(
+    scene: Scene, model: ModalModel, law: ContactLaw, frequency: float, further: Sequence[Stop] = ()
+) -> ImpactOscillator:
     def driven(gap: float, frequency: float) -> ImpactOscillator:
         drive = HarmonicDrive(frequency=frequency)
-        return ImpactOscillator(model=model, stop=Stop(gap=gap, law=law), drive=drive)
+        return ImpactOscillator(model=model, stops=(Stop(gap=gap, law=law), *further), drive=drive)
 
     keys = {"gap": "stop.gap_m", "frequency": "drive.frequencies_hz"}
     return scene.make(driven, keys, frequency=frequency)
 
 
 def beam_at(scene: Scene, frequency: float, model: ModalModel | None = None) -> ImpactOscillator:
-    """The spring of the scene at drive `frequency` [Hz]; `model` saves computing its modes again."""
-    return _on_stop(scene, model_of(scene) if model is None else model, contact_law_of(scene), frequency)
+    """The spring of the scene on all its stops, [stop] first, at drive `frequency` [Hz]; `model` saves
+    computing its modes again."""
+    known, further = model_of(scene) if model is None else model, further_stops_of(scene)
+    return _on_stop(scene, known, contact_law_of(scene), frequency, further)
 
 
 def single_mode_at(scene: Scene, frequency: float) -> ImpactOscillator:
-    """Eq. (1) of the letter at drive frequency `frequency` [Hz], with the gap of the scene."""
-    return _on_stop(scene, single_mode_of(scene), restitution_of(scene), frequency)
+    """Eq. (1) of the letter at drive frequency `frequency` [Hz], with the only gap of the scene."""
+    return _on_stop(one_stop(scene), single_mode_of(scene), restitution_of(scene), frequency)
 
 
 def restitution_of(scene: Scene) -> NewtonRestitution:
@@ -243,6 +270,7 @@ def of_the_letter(scene: Scene) -> bool:
     driven = _on_stop(scene, single_mode_of(scene), contact_law_of(scene), letter.TIME_TRACE_HZ)
     size = driven.grazing_amplitude() / letter.DRIVE_AMPLITUDE_M
     same = corresponding(scene, 1.0) == 1.0 and abs(first / letter.FREE_PERIOD_S - 1.0) <= SAME_SPRING
+    same &= not scene.stops
     return same and abs(rate) <= printed["decay_rate_error_per_s"] and 1.0 / TYPICAL <= size <= TYPICAL
 
 

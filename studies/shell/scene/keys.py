@@ -4,6 +4,8 @@ A section is a frozen dataclass of plain values. The type of a key is that of it
 number), `int` (a whole number), `str` (one line), `tuple` (a list of finite numbers). Whether a value makes
 sense is for the constructors of `beam` and `contact` to say, from which `studies.shell.scene` builds spring,
 law and drive; what no constructor sees (counts, places along the strip, scans) has its limits here.
+
+The tables of [[stops]] have the keys of `FurtherStopKeys`; any number of them is a scene.
 """
 
 from __future__ import annotations
@@ -159,7 +161,7 @@ class DriveKeys:
 
 @dataclass(frozen=True, kw_only=True)
 class StopKeys:
-    """The plate, fixed to the base."""
+    """The plate, fixed to the base; [[stops]] with gap_m, side, at and keys of [contact] adds another."""
 
     gap_m: float = key(0.011883925614219, "m", "from the ball at rest to the plate", CALIBRATED, low=0.0)
 
@@ -182,6 +184,21 @@ class ContactKeys:
     dissipation_s_per_m: float = key(
         0.0, "s/m", "hunt_crossley: chi in N = k d^(3/2) (1 + chi d'), k that of hertz", low=0.0
     )
+
+
+@dataclass(frozen=True, kw_only=True)
+class FurtherStopKeys(ContactKeys, StopKeys):
+    """A further stop, fixed to the base."""
+
+    gap_m: float = key(StopKeys.gap_m, "m", "from the point at rest to the stop", low=1e-12)
+    law: str = key(
+        "contact",
+        "",
+        "what happens at this stop; contact: as [contact] says",
+        choices=("contact", "linear", "newton", "hertz", "hunt_crossley", "tsuji"),
+    )
+    side: int = key(-1, "1", "1: beside the plate of [stop]; -1: on the other side", low=-1, high=1)
+    at: str = key("tip", "", "point of the spring that reaches it", choices=("tip", "readout"))
 
 
 @dataclass(frozen=True, kw_only=True)

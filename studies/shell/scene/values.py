@@ -25,7 +25,7 @@ from typing import Any, TypeVar
 from beam import Refusal
 from studies.shell.scene import keys as scene_keys
 from studies.shell.scene.key import GIVEN, LETTER, Key, SceneError, Value, shown
-from studies.shell.scene.keys import MODE_LISTS
+from studies.shell.scene.keys import MODE_LISTS, FurtherStopKeys
 
 T = TypeVar("T")
 
@@ -35,7 +35,8 @@ USUAL_MODES = 15
 
 @dataclass(frozen=True, kw_only=True)
 class Scene:
-    """The sections, and in `origins` the provenance of values that are no defaults (not part of equality)."""
+    """The sections, the further `stops`, and in `origins` the provenance of values that are no defaults (not
+    part of equality)."""
 
     spring: scene_keys.SpringKeys = field(default_factory=scene_keys.SpringKeys)
     tip: scene_keys.TipKeys = field(default_factory=scene_keys.TipKeys)
@@ -48,6 +49,7 @@ class Scene:
     stop: scene_keys.StopKeys = field(default_factory=scene_keys.StopKeys)
     contact: scene_keys.ContactKeys = field(default_factory=scene_keys.ContactKeys)
     scan: scene_keys.ScanKeys = field(default_factory=scene_keys.ScanKeys)
+    stops: tuple[FurtherStopKeys, ...] = ()
     origins: tuple[tuple[str, str], ...] = field(default=(), compare=False, repr=False)
 
     def __getitem__(self, key: str) -> Value:
@@ -64,9 +66,13 @@ class Scene:
         return value
 
     def replace(self, changes: Mapping[str, object], *, provenance: str = GIVEN) -> Scene:
-        """The scene with other values for some dotted keys; `provenance` says where these come from."""
+        """The scene with other values for some dotted keys; `provenance` says where these come from.  The key
+        `stops` takes a list of tables, which replaces all of them."""
         sections: dict[str, Any] = {}
         for key, value in changes.items():
+            if key == "stops":
+                sections[key] = further_stops(value)
+                continue
             section, name = split(key)
             before = sections.get(section, getattr(self, section))
             sections[section] = dataclasses.replace(before, **{name: KEYS[key].checked(key, value)})
@@ -86,9 +92,12 @@ class Scene:
             first, *parts = (keys.get(part, part) for part in error.args)
             raise SceneError(keys.get(error.field, first), *parts) from error
 
-    def values(self) -> dict[str, dict[str, object]]:
+    def values(self) -> dict[str, object]:
         """Nested plain values, section -> key -> value, as a file holds them."""
-        return {section: dataclasses.asdict(getattr(self, section)) for section in SECTIONS}
+        tables = dataclasses.asdict(self).items()
+        return {
+            name: table for name, table in tables if name != "origins" and table
+        }  # no empty list of stops
 
     def provenance(self) -> dict[str, str]:
         """Dotted key -> letter, calibrated, assumed (a default), or what `replace` was told (else given)."""
@@ -104,20 +113,22 @@ class Scene:
 
     def dump(self) -> str:
         """Every key as TOML, with meaning, unit and what is valid, default and provenance as comments."""
-        provenance, lines = self.provenance(), dict[str, list[str]]()
+        provenance, parts = self.provenance(), list[str]()
         toml = partial(json.dumps, ensure_ascii=False)  # of texts, numbers and lists of numbers
-        for key, known in KEYS.items():
-            section, name = split(key)
-            about = " ".join((getattr(self, section).__doc__ or "").split())
-            here = "" if self[key] == known.default else f"; here {provenance[key]}"
-            lines.setdefault(section, [f"# {about}", f"[{section}]"]).extend(
-                [
+        tables = [(f"[{section}]", f"{section}.", getattr(self, section)) for section in SECTIONS]
+        for heading, section, table in [*tables, *(("[[stops]]", "stops.", stop) for stop in self.stops)]:
+            lines = [f"# {' '.join((table.__doc__ or '').split())}", heading]
+            for entry in dataclasses.fields(table):
+                known, value = entry.metadata["key"], getattr(table, entry.name)
+                origin = provenance.get(section + entry.name, GIVEN)
+                here = "" if value == known.default else f"; here {origin}"
+                lines += [
                     f"# {known.meaning}",
                     f"#   {known.valid()}; default {toml(known.default)}, {known.provenance}{here}",
-                    f"{name} = {toml(self[key])}",
+                    f"{entry.name} = {toml(value)}",
                 ]
-            )
-        return "\n\n".join(map("\n".join, lines.values())) + "\n"
+            parts.append("\n".join(lines))
+        return "\n\n".join(parts) + "\n"
 
     @property
     def kept_modes(self) -> int:
@@ -132,7 +143,7 @@ class Scene:
 
 
 SECTIONS: tuple[str, ...] = tuple(
-    entry.name for entry in dataclasses.fields(Scene) if entry.name != "origins"
+    entry.name for entry in dataclasses.fields(Scene) if entry.name not in ("stops", "origins")
 )
 KEYS: dict[str, Key] = {
     f"{section}.{entry.name}": entry.metadata["key"]
@@ -147,10 +158,27 @@ def split(key: str) -> tuple[str, str]:
     section, dot, name = key.partition(".")
     if key in KEYS:
         return section, name
+    if section.partition("[")[0] == "stops":
+        raise SceneError(f"{shown(key)} cannot reach into [[stops]], a list of tables: change the file")
     namesakes = [known for known in KEYS if known.partition(".")[2] == key.rpartition(".")[2]]
     in_section = [known for known in KEYS if known.startswith(f"{section}.")] if dot else []
     nearest = get_close_matches(key[:100], namesakes or in_section or list(KEYS), n=1, cutoff=0.0)[0]
     raise SceneError(f"there is no key {shown(key)} in a scene: the nearest valid key is {nearest}")
+
+
+def further_stops(tables: object) -> tuple[FurtherStopKeys, ...]:
+    """The stops in the tables of [[stops]]; SceneError with the number of the table for what is wrong."""
+    if not isinstance(tables, list | tuple) or not all(isinstance(table, Mapping) for table in tables):
+        raise SceneError(f"stops is {shown(tables)}; it must be tables, each below a line [[stops]]")
+    known = {entry.name: entry.metadata["key"] for entry in dataclasses.fields(FurtherStopKeys)}
+    found = list[FurtherStopKeys]()
+    for number, table in enumerate(tables, start=1):
+        for name in table.keys() - known.keys():
+            nearest = get_close_matches(name[:100], known, n=1, cutoff=0.0)[0]
+            raise SceneError(f"[[stops]] {number} has no key {shown(name)}: the nearest is {nearest}")
+        checked = {name: known[name].checked(f"[[stops]] {number}: {name}", table[name]) for name in table}
+        found.append(FurtherStopKeys(**checked))
+    return tuple(found)
 
 
 def scene_from_text(
@@ -165,7 +193,9 @@ def scene_from_text(
         raise SceneError(f"the scene {shown(name)} is not valid TOML: {reason}") from error
     changes: dict[str, object] = {}
     for section, entries in values.items():
-        if not isinstance(entries, dict):
+        if section == "stops":
+            changes[section] = entries
+        elif not isinstance(entries, dict):
             split(section)
         elif section not in SECTIONS:
             split(".".join([section, *entries][:2]))
