@@ -81,10 +81,10 @@ def _symmetric(name: str, given: object, unit: str) -> csr_array:
     words = "a square symmetric matrix"
     if not issparse(given):
         given = require_array(name, given, unit, dimensions=2, words=words)
-    matrix = csr_array(given, dtype=np.float64)  # type: ignore[arg-type]
+    matrix = csr_array(given)  # type: ignore[arg-type]
+    matrix.data = require_array(name, matrix.data, unit, words=words)
     shape, largest = matrix.shape, abs(matrix).max() if matrix.nnz else 0.0
     require(shape[0] == shape[1], name, f"has shape {shape} [{unit}]; it must be {words}")
-    require(bool(np.isfinite(largest)), name, f"holds {largest} {unit}; it must be finite")
     skew = abs(matrix - matrix.T).max() if matrix.nnz else 0.0
     require(skew <= ROUNDING * largest, name, f"has entries {skew:.3g} {unit} apart from their mirror images")
     return csr_array(0.5 * (matrix + matrix.T))
