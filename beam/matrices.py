@@ -27,7 +27,7 @@ from .point import Point
 
 ROUNDING = 1e-10
 """Largest asymmetry of a matrix and residual of a mode, as a part of its terms."""
-NO_STRAIN = 1e-13
+NO_STRAIN = 1e-15
 """Energy of a rigid motion over the sum of its terms without signs, at most."""
 UNCERTAIN = 1e-11
 """Energy of any other mode over that sum, at least: rounding then changes its frequency by 1e-5 at most."""
@@ -154,8 +154,8 @@ def _inverse(matrix: csr_array, row: Array) -> float | None:
         solved = splu(part).solve(right)
     except RuntimeError:  # exactly singular
         return None
-    off = np.abs(part @ solved - right).max()
-    return float(right @ solved) if off <= SAME * np.abs(right).max() else None
+    energy, terms = float(right @ solved), float(np.abs(solved) @ (abs(part) @ np.abs(solved)))
+    return energy if energy > UNCERTAIN * terms else None
 
 
 def _decay_rates(c: csr_array, omega: Array, x: Array) -> tuple[Array, Array]:
