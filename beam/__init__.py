@@ -15,7 +15,8 @@ can touch a stop:
 
 The steps are types: `Material`, `StripSection`, `Centreline`, `LeafSpring`, `Discretization` (finite elements
 in the arc length), `Modes` (mass-normalised), `ModalModel`. Each of them may be made by hand, for instance a
-`ModalModel` of measured numbers; `single_mode` is the oscillator with one degree of freedom. `exact_modes`
+`ModalModel` of measured numbers; `single_mode` is the oscillator with one degree of freedom, and
+`ModalModel.from_matrices` takes mass and stiffness matrices of any other program. `exact_modes`
 solves the frequency equation of the straight beam, as a check of the elements. At finite rotations,
 `backbone_coefficient` gives the frequency over the amplitude and `periodic_motion` the motion itself.
 

@@ -121,6 +121,37 @@ class ModalModel:
             words = f"a damping ratio of {ratio:.3g}; above {GREATEST_RATIO:g} it hardly swings"
             suspect(f"decay_rate is {self.decay_rate[lowest]:g} 1/s in the lowest mode, {words}")
 
+    @classmethod
+    def from_matrices(
+        cls, M: object, K: object, *, points: Mapping[str, object], base: object, modes: int, C: object = None
+    ) -> ModalModel:
+        """Return the lowest modes of a structure M x'' + C x' + K x = -M base z'' + sum of row times force.
+
+        Parameters
+        ----------
+        M, K : array_like or sparse array, shape (n, n)
+            Mass [kg, for displacements] and stiffness [N/m], symmetric. K may be singular, and M too.
+        points : mapping of str to array_like or sparse array, shape (n,)
+            Rows: the motion of a point is ``row @ x`` [m]. "tip" is the tip, or else the first of them.
+        base : array_like or sparse array, shape (n,)
+            Unit rigid motion of the base along the drive, at each unknown [1].
+        modes : int
+            Number of modes, at most the number of unknowns with mass.
+        C : array_like or sparse array, shape (n, n), optional
+            Damping [kg/s] that does not couple the modes; none by default.
+
+        Raises
+        ------
+        ValueError
+            For matrices that are not symmetric, not finite or of other sizes, an M or K that is negative, a
+            point that no mode moves, a C that couples modes, or digits lost to rounding.
+        """
+        from .matrices import modes_of_matrices  # finite elements are slow to import
+
+        rows, found = modes_of_matrices(M, K, points, base, modes, C)
+        c, m = found["tip"].static_compliance, found["tip"].mass
+        return cls(**rows, static_compliance=c, tip_mass=m, points=found, dimensionless=False)
+
     @property
     def n_modes(self) -> int:
         """Number of modes."""
