@@ -55,7 +55,7 @@ if TYPE_CHECKING:
     from .parameters import InvalidType, InvalidValue, Refusal, SuspiciousValue, suspect
     from .point import Point
     from .reduction import reduce
-    from .section import Layer, StripSection
+    from .section import BeamSection, Layer, StripSection
     from .spring import LeafSpring, Readout, Support, Tip
     from .spring_mesh import BALL, LAYER, STRIP, SpringMesh, solid_spring
     from .spring_shapes import cantilever, flat_u, folded_u, straight_strip

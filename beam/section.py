@@ -29,6 +29,7 @@ curvature exceeds about b^2/t.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -160,6 +161,78 @@ class StripSection:
     def _loss(self, energies: Array) -> float:
         eta = np.array([ply.loss_factor for ply in self._plies()[0]])
         return float(eta @ energies / energies.sum())
+
+
+@dataclass(frozen=True, kw_only=True)
+class BeamSection:
+    """A section of a beam by its stiffness and mass, such as a rod, a tube or a profile.
+
+    Parameters
+    ----------
+    bending_stiffness, mass_per_length : float
+        EI [N m^2] and m [kg/m], both above zero.
+    thickness : float
+        Outer size in the plane of bending [m], with which bends are compared and films drawn.
+    width : float, optional
+        Outer size across that plane [m], for films; 0 stands for `thickness`.
+    axial_stiffness : float, optional
+        EA [N], which matters on curved centrelines only; 0 stands for that of a strip, 12 EI/thickness^2.
+    loss_factor : float
+        Loss factor of stretching and bending [1].
+    """
+
+    bending_stiffness: float
+    mass_per_length: float
+    thickness: float
+    width: float = 0.0
+    axial_stiffness: float = 0.0
+    loss_factor: float = 0.0
+    layer: ClassVar[None] = None
+
+    def __post_init__(self) -> None:
+        units = {"bending_stiffness": "N m^2", "mass_per_length": "kg/m", "thickness": "m"}
+        for name, unit in units.items():
+            require_within(name, getattr(self, name), unit, above=0)
+        require_within("loss_factor", self.loss_factor, "[1]", low=0)
+        for name, unit in {"width": "m", "axial_stiffness": "N"}.items():
+            require_within(name, getattr(self, name), unit, low=0)
+        strip = 12.0 * self.bending_stiffness / self.thickness**2
+        vars(self).update(width=self.width or self.thickness, axial_stiffness=self.axial_stiffness or strip)
+
+    @staticmethod
+    def tube(*, material: Material, outer: float, inner: float = 0.0) -> BeamSection:
+        """Return a round tube of these diameters [m], or a solid rod."""
+        require_kind("material", material, Material, "a Material, such as STEEL")
+        require_within("outer", outer, "m", above=0)
+        require_within("inner", inner, "m", low=0, below=outer)
+        area, e = 0.25 * np.pi * (outer**2 - inner**2), material.youngs_modulus
+        return BeamSection(
+            bending_stiffness=e * area * (outer**2 + inner**2) / 16.0,
+            mass_per_length=material.density * area,
+            thickness=outer,
+            axial_stiffness=e * area,
+            loss_factor=material.loss_factor,
+        )
+
+    @property
+    def total_thickness(self) -> float:
+        """The outer size in the plane of bending [m]."""
+        return self.thickness
+
+    @property
+    def bands(self) -> tuple[tuple[float, float], ...]:
+        """The interval across the plane of bending that the section fills [m]."""
+        return ((-0.5 * self.width, 0.5 * self.width),)
+
+    @property
+    def axial_loss_factor(self) -> float:
+        """Loss factor of stretching [1]."""
+        return self.loss_factor
+
+    @property
+    def bending_loss_factor(self) -> float:
+        """Loss factor of bending [1]."""
+        return self.loss_factor
 
 
 def _second_moments(modulus: Array, t: Array, y: Array) -> Array:

@@ -29,7 +29,7 @@ import numpy as np
 
 from .centreline import Centreline
 from .parameters import require, require_array, require_each, require_kind, require_within, shown, suspect
-from .section import StripSection
+from .section import BeamSection, StripSection
 
 Support = Literal["clamped", "pinned", "guided", "free"]
 
@@ -60,10 +60,11 @@ def two_supports(supports: object) -> tuple[Support, Support]:
     return pair[0], pair[1]
 
 
-def check_strip(spring: Any, section: type, axes: int) -> None:
+def check_strip(spring: Any, section: type | tuple[type, ...], axes: int) -> None:
     """Refuse wrong fields of a strip in the plane (`axes` 2) or in space (3), and normalise the others."""
     line = require_kind("centreline", spring.centreline, Centreline, "a Centreline")
-    sections = require_each("sections", spring.sections, section, f"one {section.__name__} for each piece")
+    kind = section if isinstance(section, type) else section[0]
+    sections = require_each("sections", spring.sections, section, f"one {kind.__name__} for each piece")
     count, words = len(line.pieces), f"it needs one for each of {len(line.pieces)} pieces"
     require(len(sections) == count, "sections", f"has {len(sections)} entries [no unit]; {words}")
     supports = two_supports(spring.supports)
@@ -127,7 +128,7 @@ class LeafSpring:
     ----------
     centreline : Centreline
         Curve of the strip at rest [m].
-    sections : tuple of StripSection
+    sections : tuple of StripSection or BeamSection
         One for each piece of the centreline.
     supports : tuple of two supports
         At s = 0 and at the far end: "clamped", "pinned", "guided" or "free".
@@ -160,7 +161,7 @@ class LeafSpring:
     """
 
     centreline: Centreline
-    sections: tuple[StripSection, ...]
+    sections: tuple[StripSection | BeamSection, ...]
     supports: tuple[Support, Support]
     tip: Tip
     tip_at: float
@@ -170,7 +171,7 @@ class LeafSpring:
     between: Mapping[float, Support] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        check_strip(self, StripSection, 2)
+        check_strip(self, (StripSection, BeamSection), 2)
         require_kind("readouts", self.readouts, Mapping, "a mapping of names to Readout")
         end = self.centreline.length * (1.0 + 1e-12)
         for name, readout in self.readouts.items():
@@ -199,6 +200,7 @@ class LeafSpring:
         mass, length, tip = self.strip_mass, self.centreline.length, self.tip
         thickest = max(self.sections, key=lambda section: section.total_thickness)
         thickness, width = thickest.total_thickness, thickest.width
+        flat = isinstance(thickest, StripSection)
         size, arm = f"thickness is {thickness:g} m with its layers", max(self.tip_at, length - self.tip_at)
         reach = f"the {arm:g} m from support to tip"
         if tip.mass > mass:
@@ -207,7 +209,7 @@ class LeafSpring:
         if gyration > arm:
             words = f"its radius of gyration is {gyration:.2g} m, longer than {reach}"
             suspect(f"rotary_inertia of the tip is {tip.rotary_inertia:g} kg m^2; {words}")
-        if thickness > THICKEST * width:
+        if flat and thickness > THICKEST * width:
             suspect(f"{size}; above {THICKEST:g} of the width {width:g} m it is a bar rather than a strip")
         if thickness > STOUTEST * length:
             words = f"above {STOUTEST:g} of the strip's length {length:g} m shear is no longer negligible"

@@ -25,7 +25,7 @@ from scipy.spatial import ConvexHull
 
 from .modes import Modes, ShapesAlong
 from .parameters import Array, require_within
-from .section import StripSection
+from .section import BeamSection, StripSection
 
 STRIP, LAYER, BALL = 0, 1, 2
 """Values of the cell array `part`."""
@@ -135,7 +135,7 @@ def solid_spring(
     )
 
 
-def _plies(section: StripSection) -> list[tuple[int, float, float]]:
+def _plies(section: StripSection | BeamSection) -> list[tuple[int, float, float]]:
     """Return kind, lower and upper height [m] of strip and layers; a single layer lies on the upper face."""
     half, layer = 0.5 * section.thickness, section.layer
     plies = [(STRIP, -half, half)]

@@ -23,7 +23,7 @@ from typing import Any
 
 from .centreline import Arc, Centreline, Straight
 from .parameters import require, require_array, require_kind, require_within, suspect
-from .section import StripSection
+from .section import BeamSection, StripSection
 from .spring import LeafSpring, Readout, Support, Tip
 
 
@@ -31,7 +31,7 @@ def folded_u(
     *,
     leg_length: float,
     bend_radius: float,
-    section: StripSection,
+    section: StripSection | BeamSection,
     tip: Tip,
     damped_section: StripSection | None = None,
     damped_span: tuple[float, float] | None = None,
@@ -68,7 +68,7 @@ def flat_u(
     *,
     leg_length: float,
     bend_radius: float,
-    section: StripSection,
+    section: StripSection | BeamSection,
     tip: Tip,
     damped_section: StripSection | None = None,
     damped_span: tuple[float, float] | None = None,
@@ -109,7 +109,7 @@ def flat_u(
 def straight_strip(
     *,
     length: float,
-    section: StripSection,
+    section: StripSection | BeamSection,
     supports: tuple[Support, Support],
     tip_at: float,
     tip: Tip | None = None,
@@ -143,7 +143,9 @@ def straight_strip(
     )
 
 
-def cantilever(*, length: float, section: StripSection, tip: Tip | None = None, **others: Any) -> LeafSpring:
+def cantilever(
+    *, length: float, section: StripSection | BeamSection, tip: Tip | None = None, **others: Any
+) -> LeafSpring:
     """Return a `straight_strip` clamped at x = 0 and free at x = length [m], where the tip sits.
 
     `length`, `section`, `tip` and `others` are as for `straight_strip`.
@@ -153,8 +155,11 @@ def cantilever(*, length: float, section: StripSection, tip: Tip | None = None, 
 
 
 def _leg(
-    length: float, bare: StripSection, damped: StripSection | None, span: tuple[float, float] | None
-) -> tuple[tuple[Straight, ...], tuple[StripSection, ...]]:
+    length: float,
+    bare: StripSection | BeamSection,
+    damped: StripSection | None,
+    span: tuple[float, float] | None,
+) -> tuple[tuple[Straight, ...], tuple[StripSection | BeamSection, ...]]:
     """Return pieces and sections of a straight run, from the support outwards."""
     require_within("length of the straight strip or leg", length, "m", above=0)
     require_kind("damped_section", damped, (StripSection, type(None)), "a StripSection or None")

@@ -35,7 +35,7 @@ from scipy.sparse import csr_array
 
 from .parameters import Array
 from .pieces import TANGENTIAL_DEGREE, Field, Piece
-from .section import StripSection
+from .section import BeamSection, StripSection
 
 
 def stretch(u: Field, w: Field, k: float) -> Field:
@@ -75,7 +75,7 @@ class PieceMesh(Piece):
     components = (0, 1, 5)
     curvature_jump = (2, 0)
 
-    section: StripSection
+    section: StripSection | BeamSection
 
     @staticmethod
     def element() -> sk.Element:

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 
-from beam import BALL, LAYER, STRIP, Modes, SpringMesh, solid_spring
+from beam import BALL, LAYER, STRIP, Modes, SpringMesh, StripSection, solid_spring
 from studies.shell.scene.spring import metal_of
 from studies.shell.scene.values import Scene
 
@@ -105,10 +105,9 @@ class Scenery:
                 plate[:, 0] += math.copysign(half - 0.75 * ball_radius, beside[0])
             plates.append(plate)
         cloud = np.concatenate([mesh.points - swing * DRIVE, mesh.points + swing * DRIVE, *plates])
-        room, strip = (
-            np.array([cloud.min(axis=0), cloud.max(axis=0)]),
-            BRASS if metal_of(spring.sections[0].material) == "brass" else OTHER,
-        )
+        room, section = np.array([cloud.min(axis=0), cloud.max(axis=0)]), spring.sections[0]
+        brass = isinstance(section, StripSection) and metal_of(section.material) == "brass"
+        strip = BRASS if brass else OTHER
         return Scenery(mesh=mesh, plates=plates, room=room, strip=strip)
 
 

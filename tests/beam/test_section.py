@@ -7,7 +7,22 @@ import pytest
 from scipy.sparse import diags, identity, kron
 from scipy.sparse.linalg import spsolve
 
-from beam import BRASS, DAMPING_TAPE, Layer, StripSection
+from beam import (
+    BRASS,
+    DAMPING_TAPE,
+    STEEL,
+    BeamSection,
+    ConstantRatio,
+    Layer,
+    StripDamping,
+    StripSection,
+    assemble,
+    cantilever,
+    folded_u,
+    natural_modes,
+    reduce,
+    solid_spring,
+)
 
 BARE = StripSection(material=BRASS, width=12e-3, thickness=0.65e-3)
 
@@ -55,3 +70,32 @@ def test_glued_layer_of_the_same_material_is_a_thicker_strip() -> None:
     solid = replace(BARE, thickness=BARE.thickness + 0.2e-3)
     for name in ("axial_stiffness", "bending_stiffness", "torsional_stiffness", "mass_per_length"):
         assert getattr(glued, name) == pytest.approx(getattr(solid, name), rel=1e-12)
+
+
+def test_a_section_by_its_numbers_is_the_strip_of_these_numbers():
+    """Also on bends, where the axial stiffness counts."""
+    names = "bending_stiffness", "mass_per_length", "axial_stiffness", "width", "thickness"
+    numbers = BeamSection(**{name: getattr(BARE, name) for name in names}, loss_factor=BRASS.loss_factor)
+    found = [
+        natural_modes(assemble(folded_u(leg_length=0.13, bend_radius=7.5e-3, section=section)), 6)
+        for section in (BARE, numbers)
+    ]
+    np.testing.assert_array_equal(found[0].omega, found[1].omega)
+    np.testing.assert_array_equal(*(reduce(modes, StripDamping()).decay_rate for modes in found))
+    np.testing.assert_array_equal(*(solid_spring(modes).points for modes in found))
+
+
+def test_a_tube_has_the_frequencies_and_the_statics_of_its_circles():
+    outer, inner, length = 8e-3, 6e-3, 0.4
+    tube = BeamSection.tube(material=STEEL, outer=outer, inner=inner)
+    area, inertia = np.pi * (outer**2 - inner**2) / 4, np.pi * (outer**4 - inner**4) / 64
+    model = reduce(
+        natural_modes(assemble(cantilever(length=length, section=tube)), 3), ConstantRatio(ratio=0.01)
+    )
+    roots = np.array([1.875104068711961, 4.694091132974175, 7.854757438237613])
+    wave = np.sqrt(STEEL.youngs_modulus * inertia / (STEEL.density * area))
+    np.testing.assert_allclose(model.omega, (roots / length) ** 2 * wave, rtol=1e-6)
+    assert model.static_compliance == pytest.approx(
+        length**3 / (3 * STEEL.youngs_modulus * inertia), rel=1e-7
+    )
+    assert tube.axial_stiffness == pytest.approx(STEEL.youngs_modulus * area)
