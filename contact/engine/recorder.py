@@ -115,8 +115,9 @@ def grown(recorder: Recorder) -> Recorder:
 def improve(views: list[Motion], log: np.ndarray, touches: np.ndarray) -> None:
     """Better the stays of a finished log by the laws of their stops, from the touches of the same stop in a
     row."""
-    edges = np.flatnonzero(np.diff(log["stop"], prepend=-1, append=-1))
-    for i in np.unique(np.searchsorted(edges, np.flatnonzero(log["kind"] == STAY), side="right")).tolist():
+    stays = np.flatnonzero(log["kind"] == STAY)
+    edges = np.flatnonzero(np.diff(log["stop"], prepend=-1, append=-1)) if stays.size else stays
+    for i in np.unique(np.searchsorted(edges, stays, side="right")).tolist() if stays.size else ():
         a, b = int(edges[i - 1]), int(edges[i])
         seen = views[int(log["stop"][a])]
         TOUCHES[seen.law].improve(seen, log[a:b], touches[a:b])

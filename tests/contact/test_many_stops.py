@@ -24,6 +24,7 @@ from contact import (
     Trajectory,
     simulate,
 )
+from contact.flight.crossing import GRAZE_TOLERANCE
 from contact.flight.elementary import EPS
 from contact.flight.modal_flow import steady_motion, tip_rounding
 
@@ -153,3 +154,36 @@ def test_planted_grazes(count):
             told["free" if stop is None else "touches"] += 1
     assert told["within rounding"] < 0.01 * told.total()
     assert min(told["free"], told["touches"]) > 0.2 * count
+
+
+@pytest.mark.filterwarnings("ignore::beam.SuspiciousValue")
+def test_a_graze_of_one_stop_goes_before_or_after_the_hit_of_another():
+    """The gap of the first stop is its highest peak, rounded to a double."""
+    rng, told = np.random.default_rng(55), Counter()
+    while told.total() < 200:
+        oscillator, start, length, stops, seen = views(rng)
+        if len(seen) < 2:
+            continue
+        (motion, flight, signal, tops, highest), (_, _, other, peaks, top) = seen[:2]
+        at, gap = float(tops[np.argmax(signal(tops))]), float(top / (1 + Real(0.1)))
+        hit = float(judge(other, gap, length, peaks=peaks).time)
+        blurred = tip_rounding(with_gap(motion, float(highest)), *flight) > GRAZE_TOLERANCE * float(highest)
+        if blurred or abs(hit - at) < 1e-3 * length:
+            continue
+        both = (
+            replace(stops[0], gap=float(highest), law=newton(0.5)),
+            replace(stops[1], gap=gap, law=newton(0.5)),
+        )
+        found = simulate(
+            replace(oscillator, stops=both), start, duration=max(at, hit) + 1e-6 * length
+        ).impacts
+        if hit < at:
+            assert (found.stop[0], found.kind[0]) == (1, ImpactKind.IMPACT)
+            assert found.clock[0] - start.time == pytest.approx(hit, rel=1e-9)
+        else:
+            assert found.stop[:2].tolist() == [0, 1] and found.kind[0] != ImpactKind.STAY
+            if found.kind[0] == ImpactKind.GRAZE:  # else rounding has put the peak above the stop
+                assert found.clock[:2] - start.time == pytest.approx([at, hit], rel=1e-6)
+                assert np.all(found.deviations_start[0] == found.deviations_end[0])
+        told["hit" if hit < at else ("impact", "graze")[int(found.kind[0])]] += 1
+    assert min(told["graze"], told["hit"]) > 20 and told["impact"] < 3
