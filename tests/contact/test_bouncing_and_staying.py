@@ -7,7 +7,8 @@ import pytest
 from oscillators import OMEGA, PHI, heights, modes_on_stop, newton, spring
 from whole_motions import FREE, HELD, IMPACT, STAY, accelerations, falling_body, integrate, pressed
 
-from contact import Chatter, State, simulate
+from beam import ModalModel
+from contact import Chatter, ImpactOscillator, State, Stop, simulate
 
 
 @pytest.mark.parametrize("e", [0.5, 0.7, 0.9, 0.99])
@@ -174,3 +175,20 @@ def test_plastic_tip_that_is_not_pressed_leaves_at_once():
     assert run.end.regime == FREE
     energy = oscillator.energy(run.end.displacement, run.end.velocity)
     assert energy == pytest.approx(0.5 * (OMEGA[0] * 0.005 / PHI[0]) ** 2, rel=1e-12)
+
+
+def test_a_mass_thrown_at_a_ceiling_comes_to_rest_on_the_floor():
+    """Two stops: up against the ceiling at h, down to the floor, and there hops until t = 2 e v/(g (1 - e))."""
+    g, h, start, v, ceiling, floor = 9.81, 0.1, 0.01, 3.0, 0.6, 0.5
+    model = ModalModel(omega=[0.0], decay_rate=[0.0], phi=[1.0], participation=[1.0])
+    stops = Stop(gap=0.0, law=newton(floor), side=-1), Stop(gap=h, law=newton(ceiling))
+    box = ImpactOscillator(model=model, stops=stops, load=np.array([-g]))
+    run = simulate(box, State(displacement=[start], velocity=[v]), duration=1.0)
+    up = math.sqrt(v**2 - 2 * g * (h - start))
+    down = math.hypot(ceiling * up, math.sqrt(2 * g * h))
+    times = np.cumsum([(v - up) / g, (down - ceiling * up) / g, 2 * floor * down / (g * (1 - floor))])
+    assert run.impacts.stop.tolist() == [1] + [0] * (len(run.impacts) - 1)
+    np.testing.assert_allclose([*run.impacts.start[:2], run.impacts.start[-1]], times, rtol=1e-14)
+    assert run.impacts.kind[-1] == STAY and (run.end.regime, run.end.stop) == (HELD, 0)
+    stays = simulate(box, run.end, duration=0.5)
+    assert stays.impacts.kind.tolist() == [STAY] and stays.end.displacement[0] == 0.0
