@@ -178,7 +178,7 @@ def test_plastic_tip_that_is_not_pressed_leaves_at_once():
 
 
 def test_a_mass_thrown_at_a_ceiling_comes_to_rest_on_the_floor():
-    """Two stops: up against the ceiling at h, down to the floor, and there hops until t = 2 e v/(g (1 - e))."""
+    """Two stops: up against the ceiling at h, down to the floor, and there hops for 2 e v/(g (1 - e))."""
     g, h, start, v, ceiling, floor = 9.81, 0.1, 0.01, 3.0, 0.6, 0.5
     model = ModalModel(omega=[0.0], decay_rate=[0.0], phi=[1.0], participation=[1.0])
     stops = Stop(gap=0.0, law=newton(floor), side=-1), Stop(gap=h, law=newton(ceiling))

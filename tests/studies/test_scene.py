@@ -241,10 +241,11 @@ FURTHER = {
     'gap_m = 0.02\nside = 1\nat = "readout"\nlaw = "newton"\nlocal_restitution = 0.5': "",
     "gap = 0.012": "[[stops]] 1 has no key 'gap': the nearest is gap_m",
     "gap_m = 'wide'": "[[stops]] 1: gap_m must be a finite number",
-    "side = 0": "[[stops]] 1: side is 0 [1]; it must be +1 or -1",
-    "at = 'middle'": '[[stops]] 1: at must be one of "tip", "readout"',
-    "side = 1": "which lie at one place",
-    "at = 'readout'": "[[stops]] 1: at is readout, whose quantity is a rotation",
+    "gap_m = 0.01\nside = 0": "[[stops]] 1: side is 0 [1]; it must be +1 or -1",
+    "gap_m = 0.01\nat = 'middle'": '[[stops]] 1: at must be one of "tip", "readout"',
+    "gap_m = 0.011883925614219\nside = 1": "which lie at one place",
+    "side = 1": "[[stops]] 1 has no gap_m",
+    "gap_m = 0.01\nat = 'readout'": "[[stops]] 1: at is readout, whose quantity is a rotation",
 }
 
 

@@ -176,6 +176,8 @@ def further_stops(tables: object) -> tuple[FurtherStopKeys, ...]:
         for name in table.keys() - known.keys():
             nearest = get_close_matches(name[:100], known, n=1, cutoff=0.0)[0]
             raise SceneError(f"[[stops]] {number} has no key {shown(name)}: the nearest is {nearest}")
+        if "gap_m" not in table:
+            raise SceneError(f"[[stops]] {number} has no gap_m, the distance of the stop (unit m): give it")
         checked = {name: known[name].checked(f"[[stops]] {number}: {name}", table[name]) for name in table}
         found.append(FurtherStopKeys(**checked))
     return tuple(found)
