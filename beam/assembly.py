@@ -19,7 +19,7 @@ import numpy as np
 from scipy.sparse import csr_array
 from scipy.sparse.linalg import splu
 
-from .parameters import Array, require, require_array, require_kind
+from .parameters import Array, require, require_array, require_kind, shown
 from .pieces import meshed_pieces, motion_at, shared_elements, tie_matrix, tied_matrices
 from .spring import HELD, LeafSpring, Readout, Tip
 from .strip_element import PieceMesh
@@ -77,6 +77,8 @@ class Discretization:
         supports leave a rigid motion."""
         if self.spring.rigid_motions:
             return None
+        known = ", ".join(self.readouts) or "none but the tip"
+        require(point is None or point in self.readouts, "point", f"is {shown(point)}; points are {known}")
         row = self.tip if point is None else self.readouts[point]
         return float(row @ splu(self.stiffness.tocsc()).solve(row))
 

@@ -158,6 +158,7 @@ def natural_modes(discretization: Discretization, count: int) -> Modes:
     driven = np.abs(participation) / total > COUPLING_TOLERANCE
     readouts = {name: row @ shapes for name, row in discretization.readouts.items()}
     pushed = [np.abs(readouts[name]) * total > COUPLING_TOLERANCE for name in spring.points]
+    readouts |= {name: readouts[name] * moved for name, moved in zip(spring.points, pushed, strict=True)}
     leading = np.where(moves, phi, np.where(driven, participation, _first_deflection(discretization, shapes)))
     sign = np.where(leading < 0.0, -1.0, 1.0)
     shapes = shapes * sign

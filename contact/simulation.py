@@ -47,7 +47,7 @@ def _method(method: Integrator | str | None, oscillator: ImpactOscillator) -> In
             words = f"which follows {known}; the law of the stop is {LAW_NAMES[law]}"
             raise InvalidType(f"method is {given.name}, {words}")
     if not isinstance(given, Exact):
-        _ = oscillator.motion()
+        oscillator.only_stop(f"the method {given.name}")
     return given
 
 
