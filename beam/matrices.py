@@ -18,6 +18,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
+from scipy.linalg import eigh
 from scipy.sparse import csr_array, identity, issparse
 from scipy.sparse.linalg import ArpackError, splu
 
@@ -57,7 +58,12 @@ def modes_of_matrices(
     else:
         c = _symmetric("C", damping, "kg/s")
         require(c.shape == m.shape, "C", f"has shape {c.shape} [kg/s] and {words}")
+        wide, most = count, int(np.sum(m.diagonal() > 0.0))
+        while wide < most and omega[-1] - omega[count - 1] <= SAME * omega[-1]:
+            wide += 1
+            omega, x = _modes(k, m, wide)
         rates, x = _decay_rates(c, omega, x)
+        omega, rates, x = omega[:count], rates[:count], x[:, :count]
     participation = x.T @ (m @ _vector("base", base, "[1]", n))
     first = rows.get("tip", next(iter(rows.values())))
     leading = np.where(np.abs(first @ x) > ROUNDING * (np.abs(first) @ np.abs(x)), first @ x, participation)
@@ -115,6 +121,11 @@ def _modes(k: csr_array, m: csr_array, count: int) -> tuple[Array, Array]:
     for _ in range(2):  # the second time with the first frequency as the scale
         try:
             squares, x = lowest_modes(k, m, shift, count, dense_limit=DENSE_LIMIT)
+            if 2 * count > heavy.size == lumps:  # the shifted inverse leaves the highest modes no digits
+                values, shapes = eigh(k.toarray(), m.toarray())
+                apart = 1 + np.flatnonzero(np.diff(values[:count]) > SAME * values[1:count])
+                upper = slice(int(min(apart[apart >= heavy.size // 2], default=count)), count)
+                squares[upper], x[:, upper] = values[upper], shapes[:, upper]
             x = x / np.sqrt(np.einsum("ik,ik->k", x, m @ x))
         except (np.linalg.LinAlgError, ArpackError, RuntimeError) as error:
             words = f"and M give no modes ({shown(str(error))}); K must not be negative, nor both zero"
@@ -162,13 +173,15 @@ def _decay_rates(c: csr_array, omega: Array, x: Array) -> tuple[Array, Array]:
     """Return the decay rates [1/s], and shapes that C leaves apart among those of equal frequencies."""
     groups = np.split(np.arange(omega.size), 1 + np.flatnonzero(np.diff(omega) > SAME * omega[1:]))
     x = np.hstack([x[:, one] @ np.linalg.eigh(x[:, one].T @ (c @ x[:, one]))[1] for one in groups])
-    full = x.T @ (c @ x)
-    rates = np.where(np.abs(full.diagonal()) > 1e-12 * np.abs(full).max(), full.diagonal(), 0.0)
+    full, terms = x.T @ (c @ x), np.einsum("ik,ik->k", abs(x), abs(c) @ abs(x))
+    rates = np.where(np.abs(full.diagonal()) > NO_STRAIN * terms, full.diagonal(), 0.0)
     require(
         bool(np.all(rates >= 0.0)), "C", f"has the decay rate {rates.min():.3g} 1/s; none may be negative"
     )
-    size = np.sqrt(np.outer(rates, rates)) + 1e-12 * np.abs(full).max()
-    largest = np.max(np.abs(full - np.diag(full.diagonal())) / np.where(size, size, 1.0))
+    rounding = NO_STRAIN * np.sqrt(np.outer(terms, terms))
+    apart = np.maximum(np.abs(full - np.diag(full.diagonal())) - rounding, 0.0)
+    size = np.sqrt(np.outer(rates, rates))
+    largest = np.max(np.divide(apart, size, out=np.where(apart > 0.0, np.inf, 0.0), where=size > 0.0))
     words = f"couples the modes: the largest |c_kl|/sqrt(c_kk c_ll) is {largest:.3g} [1], above {COUPLED:g}"
     require(bool(largest <= COUPLED), "C", words)
     return rates, x

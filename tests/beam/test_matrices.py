@@ -91,6 +91,14 @@ def test_all_modes_of_a_frame_are_those_of_full_matrices_and_obey_the_sums() -> 
     assert model.participation @ model.participation == pytest.approx(drive @ m @ drive, rel=1e-10)
 
 
+def test_all_modes_of_a_beam_are_found() -> None:
+    m, k, base = straight(20, 2)
+    model = beam.ModalModel.from_matrices(m, k, points={"tip": np.eye(40)[38]}, base=base, modes=40)
+    np.testing.assert_allclose(model.omega[20:] ** 2, eigh(k.toarray(), m.toarray())[0][20:], rtol=1e-10)
+    assert model.static_compliance == pytest.approx(np.sum(model.phi**2 / model.omega**2), rel=1e-9)
+    assert 1.0 / model.tip_mass == pytest.approx(model.phi @ model.phi, rel=1e-9)
+
+
 def test_damping_is_refused_unless_the_modes_diagonalise_it() -> None:
     m, k, base = straight(10, 2)
     given = dict(points={"tip": np.eye(20)[18]}, base=base, modes=6)
@@ -107,3 +115,15 @@ def test_damping_chooses_among_modes_of_equal_frequency() -> None:
     model = beam.ModalModel.from_matrices(np.eye(2), 9.0 * np.eye(2), C=damper, **given)
     np.testing.assert_allclose(model.decay_rate, [1.0, 3.0], rtol=1e-12)
     np.testing.assert_allclose(model.phi, np.sqrt(0.5), rtol=1e-12)
+
+
+def test_damping_sees_all_modes_of_a_frequency_and_leaves_rigid_motions_alone() -> None:
+    """Two equal beams under C = [[0.2, 0.1], [0.1, 0.2]] M, whose third mode is one of two; C = beta K."""
+    m, k, base = straight(20, 2)
+    pair = [np.kron(np.eye(2), matrix.toarray()) for matrix in (m, k)]
+    given = dict(points={"tip": np.eye(80)[38]}, base=np.tile(base, 2), modes=3)
+    model = beam.ModalModel.from_matrices(*pair, C=np.kron([[0.2, 0.1], [0.1, 0.2]], m.toarray()), **given)
+    np.testing.assert_allclose(model.decay_rate, [0.1, 0.3, 0.1], rtol=1e-9)
+    m, k, base = straight(20, 0)
+    free = beam.ModalModel.from_matrices(m, k, points={"tip": np.eye(42)[-2]}, base=base, modes=4, C=1e-3 * k)
+    np.testing.assert_allclose(free.decay_rate, 1e-3 * free.omega**2, rtol=1e-8)
