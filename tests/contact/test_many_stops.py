@@ -56,7 +56,7 @@ def run(problem: dict, duration: float | None = None) -> Trajectory:
 
 
 def check(problem: dict, most: float | None = None) -> None:
-    """Every touch and the end to 1e3 roundings of the start or to `most`, or the refusal of a second touch."""
+    """Every touch and the end to 1e3 roundings of the start or to `most`, or that the second is refused."""
     answer = problem["answer"]
     if "at_once" in answer:
         time = float(answer["at_once"])
@@ -95,7 +95,7 @@ def test_judge_agrees_with_another_program(name):
 
 @pytest.mark.slow
 def test_fresh_motions():
-    """To 1e-9; of the first 300 all but one, number 296 with 1.01e3, are within 1e3 roundings of the start."""
+    """To 1e-9; of the first 300 all but number 296, with 1.01e3, are within 1e3 roundings of the start."""
     for seed in range(FRESH):
         check(judged(np.random.default_rng([53, seed])), 1e-9)
 
