@@ -43,7 +43,7 @@ def modes_of_matrices(
 ) -> tuple[dict[str, Array], dict[str, Point]]:
     """Return the four arrays of a `ModalModel` by name, and its points.
 
-    The arguments are those of `ModalModel.from_matrices`; the tip is the first of the points.
+    The arguments are explained at `ModalModel.from_matrices`.  The first point is the tip.
     """
     m, k = _symmetric("M", mass, "kg"), _symmetric("K", stiffness, "N/m")
     n, words = m.shape[0], f"is of another size than M, {m.shape[0]} unknowns"
@@ -170,7 +170,10 @@ def _inverse(matrix: csr_array, row: Array) -> float | None:
 
 
 def _decay_rates(c: csr_array, omega: Array, x: Array) -> tuple[Array, Array]:
-    """Return the decay rates [1/s], and shapes that C leaves apart among those of equal frequencies."""
+    """Return the decay rates [1/s], and the shapes.
+
+    Among modes of equal frequency the shapes are chosen such that C does not couple them.
+    """
     groups = np.split(np.arange(omega.size), 1 + np.flatnonzero(np.diff(omega) > SAME * omega[1:]))
     x = np.hstack([x[:, one] @ np.linalg.eigh(x[:, one].T @ (c @ x[:, one]))[1] for one in groups])
     full, terms = x.T @ (c @ x), np.einsum("ik,ik->k", abs(x), abs(c) @ abs(x))

@@ -174,9 +174,9 @@ class BeamSection:
     thickness : float
         Outer size in the plane of bending [m], with which bends are compared and films drawn.
     width : float, optional
-        Outer size across that plane [m], for films; 0 stands for `thickness`.
+        Outer size across that plane [m], for films; 0 means as large as `thickness`.
     axial_stiffness : float, optional
-        EA [N], which matters on curved centrelines only; 0 stands for that of a strip, 12 EI/thickness^2.
+        EA [N], which matters on curved centrelines only; 0 means 12 EI/thickness^2, as a strip has.
     loss_factor : float
         Loss factor of stretching and bending [1].
     """

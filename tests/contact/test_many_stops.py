@@ -55,8 +55,8 @@ def run(problem: dict, duration: float | None = None) -> Trajectory:
     return simulate(oscillator_of(problem), State(displacement=q, velocity=v), duration=end)
 
 
-def check(problem: dict, most: float | None = None) -> None:
-    """Every touch and the end to 1e3 roundings of the start or to `most`, or that the second is refused."""
+def check(problem: dict) -> None:
+    """Every touch and the end to 1e3 roundings of the start, or the refusal at the second touch."""
     answer = problem["answer"]
     if "at_once" in answer:
         time = float(answer["at_once"])
@@ -69,8 +69,7 @@ def check(problem: dict, most: float | None = None) -> None:
     assert np.all(i.kind == ImpactKind.IMPACT)
     touches = zip(i.stop.tolist(), i.start, i.end, i.approach, i.rebound, strict=True)
     found = {"touches": list(touches), "q": end.end.displacement, "v": end.end.velocity}
-    limit = 1e3 * EPS * answer["amplification"] if most is None else most
-    assert distance(problem, answer, found) <= limit
+    assert distance(problem, answer, found) <= 1e3 * EPS * answer["amplification"]
 
 
 @pytest.mark.filterwarnings("ignore:frequency of the drive:beam.SuspiciousValue")
@@ -95,9 +94,9 @@ def test_judge_agrees_with_another_program(name):
 
 @pytest.mark.slow
 def test_fresh_motions():
-    """To 1e-9; of the first 300 all but number 296, with 1.01e3, are within 1e3 roundings of the start."""
+    """Of the first 300 all but number 296 pass, which is 1.01e3 roundings off, 2.9e-13 of its size."""
     for seed in range(FRESH):
-        check(judged(np.random.default_rng([53, seed])), 1e-9)
+        check(judged(np.random.default_rng([53, seed])))
 
 
 def views(rng: np.random.Generator) -> tuple:
