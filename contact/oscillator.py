@@ -55,6 +55,11 @@ class ImpactOscillator:
         Base motion; None for a base at rest.
     load : ndarray, shape (n_modes,), optional
         Constant modal load [N kg^-0.5].
+    simultaneous : {"moreau", "sequential"}
+        What happens under Newton's law if several stops are met at one instant, or one while a point rests on
+        another: Moreau's law for all of them, or one stop after the other until all have separated, always
+        that with the largest velocity towards it (``contact.touch.impulses``).  The first suits one body
+        that meets rigid stops, the second bodies in a row, see ``docs/several_stops.md``.
 
     Simulation takes any number of stops.  What holds for a single stop at the tip, such as collisions, maps
     and periodic orbits, refuses others in one sentence.
@@ -66,6 +71,7 @@ class ImpactOscillator:
     stops: tuple[Stop, ...]
     drive: HarmonicDrive | None = None
     load: np.ndarray | None = None
+    simultaneous: str = "moreau"
     _rows: ClassVar[list[np.ndarray]]  # weights of the modes in the height over each stop, (n_modes,) each
 
     if TYPE_CHECKING:
@@ -85,15 +91,18 @@ class ImpactOscillator:
         stops: Sequence[Stop] | None = None,
         drive: HarmonicDrive | None = None,
         load: np.ndarray | None = None,
+        simultaneous: str = "moreau",
     ) -> None:
         given = given_stops(stop, stops)
-        vars(self).update(model=model, stops=given, drive=drive, load=load)
+        vars(self).update(model=model, stops=given, drive=drive, load=load, simultaneous=simultaneous)
         self._check()
 
     def _check(self) -> None:
         """Refuse what cannot be followed, and warn of what can hardly be meant."""
         require_kind("model", self.model, ModalModel, "a ModalModel")
         require_kind("drive", self.drive, (HarmonicDrive, type(None)), "a HarmonicDrive or None")
+        words = f"is {shown(self.simultaneous)}; it must be 'moreau' or 'sequential'"
+        require(self.simultaneous in ("moreau", "sequential"), "simultaneous", words)
         omega, decay = self.model.omega, self.model.decay_rate
         vars(self).update(_rows=rows_of(self.stops, self.model))
         if self.load is not None:
@@ -258,7 +267,7 @@ class ImpactOscillator:
     def _motion(self) -> Motion:
         seen, drive = self._at_one_metre, self.drive
         views = seen if drive is None else [with_drive(one, drive.amplitude) for one in seen]
-        return views[0] if len(views) == 1 else stacked(views)
+        return views[0] if len(views) == 1 else stacked(views, self.simultaneous == "sequential")
 
     @property
     def _only_at_one_metre(self) -> Motion:

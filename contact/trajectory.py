@@ -71,8 +71,9 @@ class State:
         Modal coordinates [m kg^0.5] and their rates [m kg^0.5 / s].
     time : float
         Time since the start of the drive, base at z = Z sin(2 pi f time) [s].
-    regime : Regime
-        A number from 0 to 4 is taken too.
+    regime : Regime, or tuple of Regime
+        Of the stop `stop`, or of several stops that act at the same time, one for each.  A number from 0 to 4
+        is taken too.
     wait, rebound : float
         While waiting, the time still to wait [s] and the tip velocity with which it then leaves [m/s].
     stop : int
@@ -82,7 +83,7 @@ class State:
     displacement: np.ndarray
     velocity: np.ndarray
     time: float = 0.0
-    regime: Regime | int = Regime.OUTSIDE
+    regime: Regime | int | tuple[int, ...] = Regime.OUTSIDE
     wait: float = 0.0
     rebound: float = 0.0
     stop: int = 0
@@ -96,15 +97,23 @@ class State:
             require(array.size > 0, where, f"is []; it must be {words}")
             shape = array.shape
         if type(self.regime) is not Regime:
-            if not (is_number(self.regime) and self.regime in (0, 1, 2, 3, 4)):
+            several = isinstance(self.regime, tuple | list | np.ndarray)
+            given = list(self.regime) if several else [self.regime]
+            if not all(is_number(one) and one in (0, 1, 2, 3, 4) for one in given):
                 raise InvalidValue(f"regime of the state is {shown(self.regime)}; it must be 0, 1, 2, 3 or 4")
-            object.__setattr__(self, "regime", Regime(self.regime))
+            regimes = tuple(Regime(one) for one in given)
+            object.__setattr__(self, "regime", regimes if several else regimes[0])
         for name, unit in (("time", "s"), ("wait", "s"), ("rebound", "m/s")):
             value = getattr(self, name)
             if type(value) is not float or not math.isfinite(value):  # the usual case without a call
                 require_within(f"{name} of the state", value, unit)
         if self.stop != 0:
             require_whole("stop of the state", self.stop, "[1], the number of a stop", low=0)
+
+    @property
+    def regimes(self) -> dict[int, int]:
+        """The regime of each stop that is named."""
+        return dict(enumerate(self.regime)) if isinstance(self.regime, tuple) else {self.stop: self.regime}
 
     @staticmethod
     def rest(n_modes: int) -> State:

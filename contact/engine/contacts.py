@@ -37,9 +37,10 @@ def sample_touch(motion, run, s, until, series, space, recorder):
 
 
 @part
-def rest_of_hops(run, until, recorder):
-    """How far a step up to the clock `until` [s] lies in the hops before a stay, whose row is open [s]."""
-    row = recorder.log[recorder.marks[0].logged - 1]
+def rest_of_hops(run, stop, until, recorder):
+    """How far a step up to the clock `until` [s] lies in the hops before a stay at a stop, whose row is open
+    [s]."""
+    row = recorder.log[recorder.marks[stop].row]
     if row.kind != STAY or row.period < run.period or (row.period == run.period and row.start <= run.clock):
         return 0.0
     return until - run.clock if row.period > run.period else min(row.start, until) - run.clock
@@ -95,13 +96,13 @@ def recorded(law: SimpleNamespace) -> Callable[..., bool]:
         if sample_due(recorder, run.period, until):
             sample_touch(motion, run, s, until, series, space, recorder)
         if recorder.log.size > 0:
-            last, hops = recorder.marks[0].logged - 1, rest_of_hops(run, until, recorder)
+            last, hops = recorder.marks[run.stop].row, rest_of_hops(run, run.stop, until, recorder)
             if hops > 0.0:
                 state(motion, run, hops, series, space.u, space.v)
                 put_state(recorder.log_state[last], 0, space.u, space.v)
             known = recorder.log[last].peak_force
             work, impulse, force = exchange(motion, run, (hops, s), series, known)
-            add_exchange(recorder, work, impulse, force)
+            add_exchange(recorder, run.stop, work, impulse, force)
         return False
 
     return part(watch)

@@ -7,7 +7,8 @@ followed through the contact until the tip leaves the wall (``contact.touch``). 
 costs one multiplication by the flow of a period and a proof, most often from the lowest mode alone.
 
 With several stops each flight is searched for a touch of one after the other, always up to the earliest touch
-found so far.
+found so far.  What then happens, and all contacts but those of laws that are followed alone, is that of
+``contact.engine.together``.
 """
 
 from typing import NamedTuple
@@ -20,7 +21,6 @@ from contact.engine.contacts import (
     DONE,
     FAILED_CHATTER,
     FAILED_CROSSING,
-    FAILED_SECOND,
     FAILED_STEPS,
     GOING,
     GRAZED,
@@ -29,28 +29,25 @@ from contact.engine.contacts import (
     follow_contact,
 )
 from contact.engine.recorder import sample_due, sample_flight, strobe
+from contact.engine.together import follow_together, instant
 from contact.flight.crossing import CROSSES, FREE, UNRESOLVED, searched_flight
 from contact.flight.modal_flow import (
     LOOK,
-    START_U,
-    START_V,
     apply_flow,
     clear_faint,
     flow_over,
     load_state,
     new_flight,
     propagate_flight,
-    tip_rounding,
 )
 from contact.flight.motion import seen_from, stops_of
 from contact.flight.sampled_crossing import first_sampled_crossing
-from contact.flight.tip_search import tip_now
 from contact.machine.compiled import borrowed, held, kernel, part
+from contact.touch import time_series
 from contact.touch.passage import is_full, meet
 from contact.touch.series import Series, new_series
+from contact.touch.sets import CHANGES, Sets, new_sets
 from contact.trajectory import OUTSIDE
-
-TOGETHER = UNRESOLVED + 1  # further outcome of a flight: two stops are touched at once
 
 MOST_IMPACTS = 100_000
 """Bound of impacts in one drive period.  Accumulating impacts with e = 0.999 take about 2e4 before the hops
@@ -67,12 +64,15 @@ class Workspace(NamedTuple):
     v: np.ndarray
     stops: np.ndarray  # the table of the motion, with all stops
     height: np.ndarray  # series of the height over another stop in a contact step, shape (order + 1,)
+    sets: Sets  # workspace of contacts at several stops
 
 
 @part
 def new_workspace(motion):
     """Workspace for a run of an oscillator."""
     order, columns, several = 0, 0, stops_of(motion) > 1
+    if several:
+        order, columns = time_series.ORDER, motion.modes.shape[1]
     for j in range(stops_of(motion)):
         own = touch.series_size(seen_from(motion, j) if several else motion)
         order, columns = max(order, own[0]), max(columns, own[1])
@@ -84,35 +84,27 @@ def new_workspace(motion):
         np.empty(motion.size),
         motion.modes,
         np.empty(order + 1),
+        new_sets(motion, stops_of(motion)),
     )
 
 
 @kernel
-def earliest_touch(motion, flight, base, duration, run):
-    """The first touch of any of several stops: outcome and time as of ``searched_flight``, and its stop.
-
-    The outcome is `TOGETHER` if a second stop is reached at the same instant, within rounding.
-    """
-    outcome, s, stop = FREE, duration, run.stop
+def earliest_touch(motion, flight, base, duration, runs):
+    """The first touch of any of several stops: outcome and time as of ``searched_flight``, and its stop."""
+    outcome, s, stop = FREE, duration, runs[0].stop
     for j in range(stops_of(motion)):
-        order = run.contact_order if j == run.stop else 0
-        found, at = searched_flight(seen_from(motion, j), flight, base, s, order)
+        found, at = searched_flight(seen_from(motion, j), flight, base, s, runs[1 + j].contact_order)
         if found != FREE:
             outcome, s, stop = found, at, j
-    if outcome == CROSSES:
-        for j in range(stops_of(motion)):
-            seen = seen_from(motion, j)
-            height, rate, _acceleration = tip_now(seen, flight, base, s)
-            margin = tip_rounding(seen, flight[START_U], flight[START_V])
-            if j != stop and height >= -margin and rate >= 0.0:
-                outcome = TOGETHER
+    for j in range(1, runs.size):
+        runs[j].contact_order = 0 if s > 0.0 else runs[j].contact_order
     return outcome, s, stop
 
 
 @part
-def follow_flights(motion, u, v, run, last, clock_end, space, recorder, samples):
+def follow_flights(motion, u, v, runs, last, clock_end, space, recorder, samples):
     """Follow flights from strobe to strobe, to the next touch or the end of the run; returns the status."""
-    flight, whole, marks = space.flight, space.whole, recorder.marks[0]
+    run, flight, whole, marks = runs[0], space.flight, space.whole, recorder.marks[0]
     strobes, counts, status, several = recorder.strobes, recorder.counts, GOING, stops_of(motion) > 1
     while status == GOING:
         base, at_last = run.clock, run.period == last
@@ -121,7 +113,7 @@ def follow_flights(motion, u, v, run, last, clock_end, space, recorder, samples)
             load_state(flight, u, v)
             count, order = 0, run.contact_order
             if several:
-                outcome, s, run.stop = earliest_touch(motion, flight, base, end - base, run)
+                outcome, s, run.stop = earliest_touch(motion, flight, base, end - base, runs)
             elif samples is None:
                 outcome, s = searched_flight(motion, flight, base, end - base, order)
             else:
@@ -140,8 +132,6 @@ def follow_flights(motion, u, v, run, last, clock_end, space, recorder, samples)
             run.clock = until
             if outcome == UNRESOLVED:
                 status = FAILED_CROSSING
-            elif outcome == TOGETHER:
-                status = FAILED_SECOND
             elif outcome != FREE:
                 status = CROSSED if outcome == CROSSES else GRAZED
             run.contact_order = 0
@@ -156,7 +146,8 @@ def follow_flights(motion, u, v, run, last, clock_end, space, recorder, samples)
 def advance(motion, u, v, runs, last, clock_end, recorder, samples):
     """Carry the deviations (u, v), shape (n_modes,) each, to the time `clock_end` [s] after strobe `last`.
 
-    They and `runs`, a record array of ``contact.touch.passage.STATE`` of shape (1,), are overwritten.  With
+    They and `runs`, an array of ``contact.touch.passage.STATE``, are overwritten: the run, and behind it the
+    state of each of several stops.  An order above zero in the run says that these are to be settled.  With
     `samples`, ``contact.flight.sampled_crossing.Samples``, crossings are looked for at samples, with None
     they are proved.  Returns the status: DONE, LOG_FULL (call again with a longer log), or one of the
     failures.
@@ -164,9 +155,12 @@ def advance(motion, u, v, runs, last, clock_end, recorder, samples):
     run, workspace = runs[0], new_workspace(motion)
     motion, u, v, recorder = borrowed(motion), borrowed(u), borrowed(v), borrowed(recorder)
     space = borrowed(workspace)
-    status, several = GOING, stops_of(motion) > 1
-    seen = seen_from(motion, run.stop) if several else motion
+    status, several, seen, sets = GOING, stops_of(motion) > 1, motion, space.sets
+    if several and run.contact_order > 0:
+        run.contact_order, sets.event[:] = 0, 0
+        status = instant(motion, runs, u, v, sets, recorder)
     while status < DONE:
+        seen = seen_from(motion, run.stop) if several else seen
         if is_full(recorder):
             status = LOG_FULL
         elif recorder.marks[0].impacts > MOST_IMPACTS:
@@ -174,11 +168,21 @@ def advance(motion, u, v, runs, last, clock_end, recorder, samples):
         elif run.steps > MOST_STEPS:
             status = FAILED_STEPS
         elif run.regime == OUTSIDE:
-            status = follow_flights(motion, u, v, run, last, clock_end, space, recorder, samples)
-            seen = seen_from(motion, run.stop) if several else seen
+            status = follow_flights(motion, u, v, runs, last, clock_end, space, recorder, samples)
+        elif several and touch.joins(seen):
+            status = follow_together(motion, u, v, runs, last, clock_end, space, recorder)
         else:
             status = follow_contact(seen, u, v, run, last, clock_end, space, recorder)
-        if status == CROSSED or status == GRAZED:
-            meet(seen, run, u, v, status == CROSSED, recorder)
+            if several:
+                runs[1 + run.stop].regime, runs[1 + run.stop].contact_order = run.regime, run.contact_order
+                run.contact_order = 0
+        if several and status == CROSSED:
+            sets.event[:] = 0
+            sets.event[run.stop] = CHANGES
+            status = instant(motion, runs, u, v, sets, recorder)
+        elif status == CROSSED or status == GRAZED:
+            meet(seen_from(motion, run.stop) if several else seen, run, u, v, status == CROSSED, recorder)
+            if several:
+                runs[1 + run.stop].contact_order, run.contact_order = run.contact_order, 0
     held(workspace)
     return status

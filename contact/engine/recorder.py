@@ -18,7 +18,7 @@ from contact.touch import TOUCHES
 from contact.touch.passage import MARKS, TOUCH, new_touches, put_state
 from contact.trajectory import STAY, Run, State, Trajectory
 
-COPIED = "approach", "rebound", "loss", "impulse", "peak_force", "kind", "stop"  # columns of the log
+COPIED = "approach", "rebound", "loss", "impulse", "peak_force", "kind", "stop", "together"  # columns of the log
 
 
 class Recorder(NamedTuple):
@@ -91,11 +91,11 @@ def strobe(run, marks, strobes, counts, u, v):
     marks.impacts = 0
 
 
-def recorder_for(run: Run, n_modes: int) -> Recorder:
-    """An empty recorder for the strobes and times of `run`."""
+def recorder_for(run: Run, n_modes: int, stops: int = 1) -> Recorder:
+    """An empty recorder for the strobes and times of `run`, and a number of stops."""
     strobes, times = run.last - run.first, run.times.size
     return Recorder(
-        *new_touches(64, n_modes),  # the log grows by itself
+        *new_touches(64, n_modes, stops),  # the log grows by itself
         strobes=np.empty((strobes, 2 * n_modes)),
         counts=np.zeros(strobes, dtype=np.int64),
         sample_period=np.asarray(run.sample_period, dtype=np.int64),

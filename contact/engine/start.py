@@ -14,6 +14,7 @@ from contact.flight.modal_flow import steady_motion, tip_rounding, tip_state
 from contact.flight.motion import LOAD, Motion, views_of
 from contact.flight.sampled_crossing import Samples
 from contact.oscillator import ImpactOscillator
+from contact import touch
 from contact.touch import TOUCHES, force, strike
 from contact.touch.passage import STATE, open_touch
 from contact.trajectory import INSIDE, OUTSIDE, SUSTAINED, WAITING, ImpactKind, Regime, Run, State, Trajectory
@@ -75,7 +76,7 @@ def start_of(
     q, q_rate = steady_motion(motion, clock) if steady is None else steady
     u, v = state.displacement - q, state.velocity - q_rate
     runs = np.zeros(1, dtype=STATE)
-    regime = int(state.regime)
+    regime = int(state.regime)  # type: ignore[arg-type]
     height, velocity, _acceleration = tip_state(motion, clock, u, v)
     rounding = tip_rounding(motion, u, v)
     near = HELD_WITHIN * rounding
@@ -113,18 +114,28 @@ def start_of(
 def start_of_several(
     motion: Motion, state: State, period: int, clock: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """`start_of` for a `motion` with several stops; TouchedAtOnce is raised if two of them act."""
-    views, found = views_of(motion), list[tuple[np.ndarray, np.ndarray, np.ndarray]]()
+    """`start_of` for a `motion` with several stops: the `STATE` of the run, and behind it of each stop.
+
+    TouchedAtOnce is raised if two of them act and one has a law that is followed alone.
+    """
+    views, regimes = views_of(motion), state.regimes
     words = f"it must be the number of one of {len(views)} stops, from 0 on"
     require(state.stop < len(views), f"stop of the state is {state.stop} [1]; {words}")
-    for j, seen in enumerate(views):
-        regime = state.regime if j == state.stop else OUTSIDE
-        found.append(start_of(seen, replace(state, regime=regime, stop=j), period, clock))
-    touched = [start for start in found if start[2]["regime"][0] != OUTSIDE]
-    if len(touched) > 1:
-        raise failure(contacts.FAILED_SECOND, motion, touched[0][2], *touched[0][:2])
-    on_wall = [start for start in found if start[2]["contact_order"][0] > 0]
-    return (touched or on_wall or found)[0]
+    if isinstance(state.regime, tuple):
+        words = f"it must have one for each of {len(views)} stops"
+        require(len(state.regime) == len(views), f"regime of the state has {len(state.regime)} entries; {words}")
+    found = [
+        start_of(seen, replace(state, regime=regimes.get(j, OUTSIDE), stop=j), period, clock)
+        for j, seen in enumerate(views)
+    ]
+    u, v, stops = *found[0][:2], np.concatenate([runs for _u, _v, runs in found])
+    acting = np.flatnonzero(stops["regime"] != OUTSIDE)
+    run = stops[acting[:1]] if acting.size else stops[:1].copy()
+    run["contact_order"] = 1  # the first step settles the stops
+    runs = np.concatenate((run, stops))
+    if acting.size > 1 and not all(touch.joins(views[j]) for j in acting):
+        raise failure(contacts.FAILED_SECOND, motion, runs, u, v)
+    return u, v, runs
 
 
 def state_of(motion: Motion, runs: np.ndarray, displacement: np.ndarray, velocity: np.ndarray) -> State:
@@ -134,7 +145,7 @@ def state_of(motion: Motion, runs: np.ndarray, displacement: np.ndarray, velocit
         displacement=displacement,
         velocity=velocity,
         time=int(run["period"]) * motion.period + run["clock"],
-        regime=int(run["regime"]),
+        regime=tuple(runs["regime"][1:].tolist()) if np.sum(runs["regime"][1:] > 0) > 1 else int(run["regime"]),
         wait=float(run["wait"]),
         rebound=float(run["rebound"]),
         stop=int(run["stop"]) if run["regime"] != OUTSIDE else 0,
@@ -164,12 +175,13 @@ def exact_trajectory(oscillator: ImpactOscillator, run: Run, samples: Samples | 
     motion, n = oscillator.numbers(), oscillator.n_modes
     starts = start_of_several if len(oscillator.stops) > 1 else start_of
     u, v, runs = starts(motion, run.start, run.first, run.clock)
-    recorder = recorder_for(run, n)
-    if runs[0]["regime"] != OUTSIDE:
-        stays = runs[0]["regime"] == SUSTAINED
-        kind, approach = (ImpactKind.STAY, 0.0) if stays else (ImpactKind.UNDER_WAY, np.nan)
-        open_touch(recorder, runs[0]["stop"], run.first, run.clock, approach, int(kind), u, v)
-        recorder.marks["impacts"] = 0  # it did not begin in this period
+    recorder = recorder_for(run, n, len(oscillator.stops))
+    for each in runs[-len(oscillator.stops) :]:
+        if each["regime"] != OUTSIDE:
+            stays = each["regime"] == SUSTAINED
+            kind, approach = (ImpactKind.STAY, 0.0) if stays else (ImpactKind.UNDER_WAY, np.nan)
+            open_touch(recorder, each["stop"], run.first, run.clock, approach, int(kind), u, v)
+    recorder.marks["impacts"] = 0  # none of them began in this period
     while True:
         status = loop.advance(motion, u, v, runs, run.last, run.clock_end, recorder, samples)
         if status != loop.LOG_FULL:

@@ -28,7 +28,8 @@ doubles, omega, 1/omega (or zero), 1/max(omega, c/2) (or the period), S, C, g/om
 
 NUMBERS = 12
 """In a stack, the row after those of a stop that holds `_OWN`; one more holds law, numbers, and where in the
-row `Motion.table` its own table begins, with the numbers of its rows and columns."""
+row `Motion.table` its own table begins, with the numbers of its rows and columns, and whether stops that are
+met together act one after the other."""
 STACKED = 14  # rows of the table for each of several stops
 
 _OWN = "level", "tip_sine", "tip_cosine", "amplitude", "gap", "inverse_mass"
@@ -153,13 +154,16 @@ def motion_of(
     )
 
 
-def stacked(views: Sequence[Motion]) -> Motion:
-    """The numbers of an oscillator with several stops, from those that each of them sees."""
+def stacked(views: Sequence[Motion], sequential: bool) -> Motion:
+    """The numbers of an oscillator with several stops, from those that each of them sees.
+
+    `sequential`: whether stops that are met at one instant act one after the other.
+    """
     blocks, tables, first = [], [], 0
     for view in views:
         own = np.zeros((STACKED - NUMBERS, view.modes.shape[1]))
         own[0, : len(_OWN)] = [getattr(view, name) for name in _OWN]
-        own[1, :6] = view.law, view.number0, view.number1, first, *view.table.shape
+        own[1, :7] = view.law, view.number0, view.number1, first, *view.table.shape, sequential
         first += view.table.size
         blocks.append(np.concatenate((view.modes, own)))
         tables.append(view.table.ravel())

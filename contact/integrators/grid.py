@@ -197,12 +197,12 @@ def make_contact_writer(interpolate: Interpolate) -> WriteContact:
         if opens:
             open_touch(recorder, 0, grid.first, start + x * h, rate, IMPACT, grid.q_at, grid.v_at)
         if touching or opens:
-            add_exchange(recorder, given[0], given[1], given[2])
+            add_exchange(recorder, 0, given[0], given[1], given[2])
         if closes:
             if opens:
                 x = 1.0
                 _depth, rate = interpolate(grid, method, x, h, True)
-            close_touch(recorder, grid.first, start + x * h, rate, grid.q_at, grid.v_at)
+            close_touch(recorder, 0, grid.first, start + x * h, rate, grid.q_at, grid.v_at)
 
     return write
 

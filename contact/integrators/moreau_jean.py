@@ -94,8 +94,8 @@ def write_percussion(grid, corner, span, _depth, push):
         if opens:
             open_touch(recorder, 0, grid.first, start + corner * h, before, IMPACT, grid.q_at, grid.v_at)
         loss = 0.5 * (before - after) * (before + after) / grid.motion.inverse_mass
-        add_exchange(recorder, loss, push, math.nan)
-        close_touch(recorder, grid.first, start + corner * h, after, grid.q_at, grid.v)
+        add_exchange(recorder, 0, loss, push, math.nan)
+        close_touch(recorder, 0, grid.first, start + corner * h, after, grid.q_at, grid.v)
         marks.touching = 1
 
 

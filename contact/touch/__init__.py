@@ -118,4 +118,5 @@ def _compiled(name: str) -> Callable[..., Any]:
 strike, force, stiffness, saltation, inside, slopes, state, series_size, series_variable = map(
     _compiled, "strike force stiffness saltation inside slopes state series_size series_variable".split()
 )
+joins, coefficient = map(_compiled, ("joins", "coefficient"))
 """The functions of motion.law that are needed beside the steps of a touch (``contact.touch.passage``)."""

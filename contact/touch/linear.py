@@ -50,6 +50,18 @@ def slopes(motion, run, series, weights):
     return 1
 
 
+@part
+def joins(motion):
+    """It is followed beside other contacts."""
+    return True
+
+
+@part
+def coefficient(motion, n, depth):
+    """Order n of k d + c d'."""
+    return motion.number0 * depth[n] + motion.number1 * (n + 1.0) * depth[n + 1]
+
+
 @kernel
 def step(motion, run, u, v, limit, series):
     """One step from (u, v), at most `limit` [s]; see ``contact.touch``."""
@@ -57,7 +69,7 @@ def step(motion, run, u, v, limit, series):
     depth, force = series.scalars[DEPTH], series.scalars[FORCE]
     begin(motion, run.clock, u, v, series)
     for n in range(time_series.ORDER - 1):
-        force[n] = k * depth[n] + c * (n + 1.0) * depth[n + 1]
+        force[n] = coefficient(motion, n, depth)
         extend(motion, n, 0.0 if run.regime == INSIDE else force[n], series)
     h = min(longest_step(motion, k * depth[0] ** 2, u, v, series), limit)
     if not h > EPS * run.clock:

@@ -64,6 +64,8 @@ STEADY_PULL = 0.1
 """Part of itself by which the acceleration of the tip may change until the hops end: W is then right to 4 %,
 and the hops do end."""
 
+STEADY_WANTED = 2  # verdict of `low_hop`
+
 
 @part
 def force(numbers, depth, rate):
@@ -83,6 +85,12 @@ def slopes(motion, run, series, weights):
     return 0
 
 
+@part
+def joins(motion):
+    """Its impacts and its rest are followed beside other contacts."""
+    return True
+
+
 @kernel
 def newton_impact(motion, v, approach, restitution):
     """Apply the impulse that turns the tip velocity `approach` into -`restitution` times itself."""
@@ -92,22 +100,32 @@ def newton_impact(motion, v, approach, restitution):
 
 
 @part
-def hops_end(motion, run, u, v, rebound, rounding):
-    """Whether the tip stays on the wall, as its hops are low and end: see `LOWEST_HOP`.
+def low_hop(motion, clock, acceleration, rebound, rounding):
+    """0 if a hop is not low enough for a stay or does not end, 1 if it is one, `STEADY_WANTED` if it is one
+    under a steady pull; see `LOWEST_HOP`.
 
     `rebound` is the speed with which the tip leaves [m/s] and `rounding` the rounding bound of the tip
     displacement [m].
     """
-    acceleration, lost = tip_state(motion, run.clock, u, v)[2], 1.0 - motion.number0
-    lowest, energy = rounding * acceleration, 0.5 * rebound * rebound
+    lost, lowest, energy = 1.0 - motion.number0, rounding * acceleration, 0.5 * rebound * rebound
     if acceleration <= 0.0 or energy * lost > max(LOWEST_HOP * lost, 1.0) * lowest:
-        return False
+        return 0
     if energy <= LOST_HOP * lowest:
-        return True
-    left = motion.period if energy <= LOWEST_HOP * lowest else motion.period - run.clock
-    pull = acceleration * lost  # W = 2 rebound/pull
+        return 1
+    left = motion.period if energy <= LOWEST_HOP * lowest else motion.period - clock
+    return STEADY_WANTED if 2.0 * rebound <= left * acceleration * lost else 0
+
+
+@part
+def hops_end(motion, run, u, v, rebound, rounding):
+    """Whether the tip stays on the wall, as its hops are low and end; arguments of `low_hop`."""
+    acceleration = tip_state(motion, run.clock, u, v)[2]
+    verdict = low_hop(motion, run.clock, acceleration, rebound, rounding)
+    if verdict != STEADY_WANTED:
+        return verdict > 0
+    pull = acceleration * (1.0 - motion.number0)  # W = 2 rebound/pull
     change = 2.0 * rebound * jerk_bound(motion, u, v)
-    return 2.0 * rebound <= left * pull and change <= STEADY_PULL * acceleration * pull
+    return change <= STEADY_PULL * acceleration * pull
 
 
 @part

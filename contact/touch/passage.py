@@ -25,8 +25,9 @@ from contact.flight.modal_flow import hold, tip_state
 from contact.machine.compiled import kernel, part
 from contact.trajectory import GRAZE, IMPACT, OUTSIDE, STAY, SUSTAINED
 
-MARKS = np.dtype([(name, "i8") for name in ("logged", "sampled", "strobed", "impacts", "touching")])
-"""Rows in use of log, samples and strobes; impacts since the last strobe; whether the tip touches."""
+MARKS = np.dtype([(name, "i8") for name in ("logged", "sampled", "strobed", "impacts", "touching", "row")])
+"""Rows in use of log, samples and strobes, and impacts since the last strobe, all in the first record; whether
+a stop is touched, and the row of its last touch, in the record of its number."""
 
 _NAMES = (
     "period",
@@ -40,18 +41,19 @@ _NAMES = (
     "peak_force",
     "kind",
     "stop",
+    "together",
 )
-_WHOLE = ("period", "end_period", "kind", "stop")
+_WHOLE = ("period", "end_period", "kind", "stop", "together")
 TOUCH = np.dtype([(name, "i8" if name in _WHOLE else "f8") for name in _NAMES])
 """A touch: period and clock of its start and of its end [s], velocity towards the stop at both [m/s], energy
 given to the stop [J], impulse [N s] and largest force [N] (NaN if not known),
-``contact.trajectory.ImpactKind`` and number of the stop."""
+``contact.trajectory.ImpactKind``, number of the stop, and whether others acted at this instant."""
 
 
 class Touches(NamedTuple):
     """Touches in the order in which they began; a record with more fields can stand in its place."""
 
-    marks: np.ndarray  # `MARKS`, shape (1,)
+    marks: np.ndarray  # `MARKS`, shape (1,), or one for each of several stops
     log: np.ndarray  # `TOUCH`, shape (capacity,); empty if no touches are wanted
     log_state: np.ndarray  # (u, v) just before the touch and just after the release, (capacity, 4 n_modes)
 
@@ -61,9 +63,9 @@ class Touches(NamedTuple):
         return self.log_state.reshape(len(self.log), 2, 2, -1)
 
 
-def new_touches(capacity: int, n_modes: int) -> Touches:
+def new_touches(capacity: int, n_modes: int, stops: int = 1) -> Touches:
     """An empty record with a place for `capacity` touches."""
-    return Touches(np.zeros(1, MARKS), np.zeros(capacity, TOUCH), np.empty((capacity, 4 * n_modes)))
+    return Touches(np.zeros(stops, MARKS), np.zeros(capacity, TOUCH), np.empty((capacity, 4 * n_modes)))
 
 
 @part
@@ -77,17 +79,18 @@ def put_state(row, at, u, v):
 
 @part
 def is_full(record):
-    """Whether the log has no rows left for a touch and the stay that may follow it."""
-    return record.log.size > 0 and record.marks[0].logged >= record.log.size - 1
+    """Whether the log has no rows left for a touch of each stop and the stays that may follow."""
+    rows = 2 * record.marks.size
+    return record.log.size > 0 and record.marks[0].logged > record.log.size - rows
 
 
 @kernel
 def open_touch(record, stop, period, clock, approach, kind, u, v):
     """Start a row of the log, for a touch of the stop of this number."""
-    marks = record.marks[0]
-    marks.touching = 1
-    marks.impacts += 1 if kind == IMPACT else 0
+    marks, own = record.marks[0], record.marks[stop]
     i = marks.logged
+    own.touching, own.row = 1, i
+    marks.impacts += 1 if kind == IMPACT else 0
     marks.logged += 1
     if record.log.size == 0:
         return
@@ -95,27 +98,28 @@ def open_touch(record, stop, period, clock, approach, kind, u, v):
     row.period, row.start, row.end_period, row.end = period, clock, period, math.nan
     row.approach, row.rebound, row.loss, row.kind, row.stop = approach, math.nan, 0.0, kind, stop
     row.impulse = row.peak_force = math.nan
+    row.together = 0
     put_state(record.log_state[i], 0, u, v)
     record.log_state[i, 2 * n :] = math.nan
 
 
 @part
-def add_exchange(record, work, impulse, force):
-    """Add work [J], impulse [N s] and largest force [N] (NaN if it has none) to the touch under way."""
+def add_exchange(record, stop, work, impulse, force):
+    """Add work [J], impulse [N s] and largest force [N] (NaN if it has none) to the last touch of a stop."""
     if record.log.size > 0:
-        row = record.log[record.marks[0].logged - 1]
+        row = record.log[record.marks[stop].row]
         row.loss += work
         row.impulse = impulse if math.isnan(row.impulse) else row.impulse + impulse
         row.peak_force = row.peak_force if force <= row.peak_force else force
 
 
 @kernel
-def close_touch(record, period, clock, rebound, u, v):
-    """Complete the last row of the log."""
-    record.marks[0].touching = 0
+def close_touch(record, stop, period, clock, rebound, u, v):
+    """Complete the row of the last touch of a stop."""
+    record.marks[stop].touching = 0
     if record.log.size == 0:
         return
-    i = record.marks[0].logged - 1
+    i = record.marks[stop].row
     row = record.log[i]
     row.end_period, row.end, row.rebound = period, clock, rebound
     put_state(record.log_state[i], 2 * u.size, u, v)
@@ -125,7 +129,8 @@ STATE = np.dtype(
     [(name, "i8") for name in ("regime", "contact_order", "stop", "period", "evaluations", "steps")]
     + [(name, "f8") for name in ("clock", "wait", "rebound", "memory0", "memory1")]
 )
-"""The state of a motion besides its deviations: ``contact.trajectory.State`` for kernels.
+"""The state of a motion besides its deviations: ``contact.trajectory.State`` for kernels.  With several stops
+more records follow, one for each stop, of which regime and contact_order count.
 
 regime, wait, rebound: as there; contact_order: number of derivatives of the height over `stop` that vanish at
 the start of the flight; stop: number of the stop that is touched or was the last to be; period, clock: number
@@ -155,9 +160,9 @@ def begin(motion, run, u, v, touches):
     approach = tip_state(motion, run.clock, u, v)[1]
     open_touch(touches, run.stop, run.period, run.clock, approach, IMPACT, u, v)
     run.regime, rebound, loss, impulse = touch.strike(motion, run, u, v, approach)
-    add_exchange(touches, loss, impulse, math.nan)
+    add_exchange(touches, run.stop, loss, impulse, math.nan)
     if run.regime == OUTSIDE or run.regime == SUSTAINED:
-        close_touch(touches, run.period, run.clock, rebound, u, v)
+        close_touch(touches, run.stop, run.period, run.clock, rebound, u, v)
     return approach, rebound
 
 
@@ -170,8 +175,8 @@ def meet(motion, run, u, v, crosses, touches):
     """
     if not crosses:
         open_touch(touches, run.stop, run.period, run.clock, 0.0, GRAZE, u, v)
-        add_exchange(touches, 0.0, 0.0, 0.0)
-        close_touch(touches, run.period, run.clock, 0.0, u, v)
+        add_exchange(touches, run.stop, 0.0, 0.0, 0.0)
+        close_touch(touches, run.stop, run.period, run.clock, 0.0, u, v)
         run.contact_order = 2
     else:
         _approach, rebound = begin(motion, run, u, v, touches)
@@ -181,7 +186,7 @@ def meet(motion, run, u, v, crosses, touches):
             begins = run.clock + run.memory0 - late * motion.period
             open_touch(touches, run.stop, run.period + late, begins, 0.0, STAY, u, v)
             work, impulse = 0.5 * rebound * rebound / motion.inverse_mass, rebound / motion.inverse_mass
-            add_exchange(touches, work, impulse, math.nan)
+            add_exchange(touches, run.stop, work, impulse, math.nan)
             run.memory0 = -1.0
 
 
@@ -209,7 +214,7 @@ def _follow(law: SimpleNamespace, watch: Callable[..., bool]) -> Callable[..., i
             run.regime, run.clock = following, until
             if following == OUTSIDE:
                 velocity = leave(motion, run, u, v)
-                close_touch(touches, run.period, run.clock, velocity, u, v)
+                close_touch(touches, run.stop, run.period, run.clock, velocity, u, v)
                 return RELEASED
         return AT_END
 

@@ -78,6 +78,18 @@ def inside(motion, vary, now, length, tangent):
     """No more effect: the tangents have gone up to this time with the series."""
 
 
+@part
+def joins(motion):
+    """Whether contacts of this law are followed while others are closed: not without more."""
+    return False
+
+
+@part
+def coefficient(motion, n, depth):
+    """No series of its own beside others."""
+    return math.nan
+
+
 def acceleration(force, motion, free, q, rate):
     """The acceleration `free` of the modes less that by the push of the stop, under the `force` of a law."""
     depth = motion.tip(q) - motion.gap

@@ -79,6 +79,19 @@ def largest(row):
     return max(a, b)
 
 
+@part
+def longest_of_modes(motion, stored, u, v, rows):
+    """Longest time by the last terms of the modes [s], and the size of the speeds; see `longest_step`."""
+    scale = speed_scale(motion, u, v)
+    speed = math.sqrt(scale * scale + stored)
+    top, below = largest(rows[ORDER]), largest(rows[ORDER - 1])
+    allowed = TOLERANCE * speed
+    power = min(
+        log_longest(ORDER * top, ORDER - 1, allowed), log_longest((ORDER - 1.0) * below, ORDER - 2, allowed)
+    )
+    return min(math.exp(power), motion.period), speed
+
+
 @kernel
 def longest_step(motion, stored, u, v, series):
     """Longest time over which the neglected terms stay below rounding [s]; NaN if the series overflows.
@@ -88,14 +101,7 @@ def longest_step(motion, stored, u, v, series):
     depth, force = series.scalars[DEPTH], series.scalars[FORCE]
     if not (abs(depth[ORDER]) < OVERFLOW and abs(force[ORDER - 2]) < OVERFLOW):
         return math.nan
-    scale = speed_scale(motion, u, v)
-    speed = math.sqrt(scale * scale + stored)
-    top, below = largest(series.rows[ORDER]), largest(series.rows[ORDER - 1])
-    allowed = TOLERANCE * speed
-    power = min(
-        log_longest(ORDER * top, ORDER - 1, allowed), log_longest((ORDER - 1.0) * below, ORDER - 2, allowed)
-    )
-    h = min(math.exp(power), motion.period)
+    h, speed = longest_of_modes(motion, stored, u, v, series.rows)
     return limited_by_force(h, force, ORDER - 2, math.sqrt(motion.inverse_mass), speed, _EDGE)
 
 

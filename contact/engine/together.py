@@ -1,0 +1,266 @@
+"""Stops that are touched at once: instants at which one is met or let go, and the motion between them.
+
+At an instant the impulses of Newton's law come first (``contact.touch.impulses``), for all stops that are met
+within rounding and all at which a point rests.  Then contacts with a force begin and end.  Last, accelerations
+decide which points stay at rest (``contact.touch.rests``).  Between two instants the closed contacts are
+followed together (``contact.touch.sets``).
+
+The state of each stop, its regime and order, is a record of ``contact.touch.passage.STATE`` behind that of the
+run.  The record of the run names the first stop that is closed, and its regime.
+"""
+
+import math
+
+import numpy as np
+
+from contact import touch
+from contact.engine.contacts import (
+    DONE,
+    FAILED_CHATTER,
+    FAILED_SECOND,
+    FAILED_SERIES,
+    FAILED_STEPS,
+    GOING,
+    MOST_STEPS,
+    rest_of_hops,
+)
+from contact.engine.recorder import put_sample, sample_due, strobe
+from contact.flight.elementary import EPS
+from contact.flight.modal_flow import tip_rounding, tip_state
+from contact.flight.motion import NUMBERS, seen_from
+from contact.laws import NEWTON
+from contact.machine.compiled import kernel, part
+from contact.touch import time_series
+from contact.touch.exchange import UNIFORM, exchange_of
+from contact.touch.impulses import MOST, moreau, sequence
+from contact.touch.newton import STEADY_PULL, restitution_at
+from contact.touch.passage import CLOSEST, add_exchange, begin, close_touch, open_touch, put_state
+from contact.touch.rests import hopping, hops_end, settle
+from contact.touch.series import Series, fitted
+from contact.touch.sets import (
+    AFTER,
+    CHANGES,
+    IMPULSE,
+    LEAVES,
+    LOSS,
+    RESTITUTION,
+    SPEED,
+    hold,
+    push_back,
+    step,
+)
+from contact.trajectory import CONTACT, IMPACT, INSIDE, OUTSIDE, STAY, SUSTAINED
+
+HOPS, STAYS = 3, 4  # events of a stop that an impulse has left with a velocity; that its hops lead to rest
+
+
+@part
+def rate_rounding(seen, u, v):
+    """Bound of the rounding error of a velocity [m/s], by that of the height and the fastest change."""
+    return tip_rounding(seen, u, v) * seen.fastest
+
+
+@kernel
+def strike_together(motion, runs, u, v, sets, recorder):
+    """The impulses at all of Newton's stops that are met, or hold their point at rest; returns the status.
+
+    Stops that are then left have the event `HOPS`; where no velocity is left the regime is SUSTAINED.
+    """
+    run, stops = runs[0], runs[1:]
+    members, numbers, count, hits = np.empty(stops.size, np.int64), np.empty((5, stops.size)), 0, 0
+    for j in range(stops.size):
+        seen, regime = seen_from(motion, j), stops[j].regime
+        if seen.law != NEWTON:
+            continue
+        height, rate, _pull = tip_state(seen, run.clock, u, v)
+        near = abs(height) <= tip_rounding(seen, u, v) and rate > 0.0
+        if regime == SUSTAINED or (regime == OUTSIDE and (near or sets.event[j] == CHANGES)):
+            members[count] = j
+            numbers[SPEED, count] = max(rate, 0.0) if regime == OUTSIDE else 0.0
+            numbers[RESTITUTION, count] = restitution_at(seen, numbers[SPEED, count])[0]
+            hits += 1 if regime == OUTSIDE else 0
+            count += 1
+    if hits == 0:
+        return GOING
+    if count > MOST:
+        return FAILED_SECOND
+    answer = numbers[IMPULSE], numbers[AFTER], numbers[LOSS]
+    if motion.modes[NUMBERS + 1, 6] == 0.0:
+        moreau(sets.coupling, members, count, numbers[RESTITUTION], numbers[SPEED], answer)
+    elif not sequence(sets.coupling, members, count, numbers[RESTITUTION], numbers[SPEED], answer):
+        return FAILED_CHATTER
+    for p in range(count):
+        if stops[members[p]].regime == OUTSIDE:
+            open_touch(recorder, members[p], run.period, run.clock, numbers[SPEED, p], IMPACT, u, v)
+    for p in range(count):
+        push_back(motion.modes, members[p], numbers[IMPULSE, p], v)
+    for p in range(count):
+        j, after = members[p], numbers[AFTER, p]
+        add_exchange(recorder, j, numbers[LOSS, p], numbers[IMPULSE, p], math.nan)
+        if stops[j].regime == OUTSIDE:
+            close_touch(recorder, j, run.period, run.clock, after, u, v)
+            if recorder.log.size > 0:
+                recorder.log[recorder.marks[j].row].together = 1 if count > 1 else 0
+        leaves = after < -rate_rounding(seen_from(motion, j), u, v)
+        stops[j].regime, stops[j].contact_order = (OUTSIDE, 1) if leaves else (SUSTAINED, 0)
+        sets.event[j] = HOPS if leaves else 0
+    return GOING
+
+
+@kernel
+def change_contacts(motion, runs, u, v, sets, recorder):
+    """Begin and end the contacts with a force; returns the status."""
+    run, stops = runs[0], runs[1:]
+    for j in range(stops.size):
+        seen, regime = seen_from(motion, j), stops[j].regime
+        if seen.law == NEWTON:
+            continue
+        height, rate, _pull = tip_state(seen, run.clock, u, v)
+        rounding, own = tip_rounding(seen, u, v), stops[j]
+        near = abs(height) <= rounding
+        if regime == OUTSIDE:
+            if not rate > 0.0 and sets.event[j] == CHANGES:
+                own.contact_order = 1  # an impulse at this instant has turned it round
+            elif rate > 0.0 and (near or sets.event[j] == CHANGES):
+                for i in range(stops.size):
+                    if stops[i].regime != OUTSIDE and not (touch.joins(seen) and touch.joins(seen_from(motion, i))):
+                        run.stop = j
+                        return FAILED_SECOND
+                run.stop = j
+                begin(seen, run, u, v, recorder)
+                own.regime, own.contact_order = run.regime, 0
+        elif touch.joins(seen):
+            push = touch.coefficient(seen, 0, (height, rate))
+            if regime == CONTACT and (sets.event[j] == CHANGES or push <= 0.0):
+                own.regime = INSIDE if height > rounding else OUTSIDE
+            elif regime == INSIDE and sets.event[j] != LEAVES and (sets.event[j] == CHANGES or push > 0.0):
+                own.regime = CONTACT
+            elif sets.event[j] == LEAVES:
+                own.regime = OUTSIDE
+            if own.regime == OUTSIDE:
+                own.contact_order = 1
+                close_touch(recorder, j, run.period, run.clock, rate, u, v)
+    return GOING
+
+
+@kernel
+def end_of_hops(motion, runs, u, v, sets):
+    """Put points to rest whose hops are low; returns the velocities of all points over their stops [m/s]."""
+    run, stops = runs[0], runs[1:]
+    rates, low, closed = np.zeros(stops.size), False, False
+    for j in range(stops.size):
+        closed = closed or stops[j].regime != OUTSIDE
+    for j in range(stops.size):
+        seen = seen_from(motion, j)
+        _height, rates[j], pull = tip_state(seen, run.clock, u, v)
+        if sets.event[j] == HOPS:
+            speed = -rates[j]
+            lowest = 1e3 * tip_rounding(seen, u, v) * pull / max(1.0 - seen.number0, EPS)
+            if (closed or 0.5 * speed * speed <= lowest) and hops_end(motion, run, stops, j, speed, u, v, sets):
+                sets.event[j], low = STAYS, True
+    for j in range(stops.size):
+        if sets.event[j] == STAYS:
+            stops[j].regime, stops[j].contact_order = SUSTAINED, 0
+    if low:
+        settle(motion, run.clock, stops, u, v, sets)
+    return rates
+
+
+@kernel
+def begin_stay(motion, runs, j, speed, u, v, sets, recorder):
+    """Open the row of a rest that hops of this `speed` lead to."""
+    run, stops = runs[0], runs[1:]
+    whole, sooner, mass = hopping(motion, run.clock, stops, j, speed, u, v, sets)
+    wait = whole * (1.0 - sooner) if whole <= motion.period and abs(sooner) < STEADY_PULL else 0.0
+    late = int((run.clock + wait) / motion.period)
+    open_touch(recorder, j, run.period + late, run.clock + wait - late * motion.period, 0.0, STAY, u, v)
+    add_exchange(recorder, j, 0.5 * mass * speed * speed, mass * speed, math.nan)
+
+
+@kernel
+def instant(motion, runs, u, v, sets, recorder):
+    """What happens at an instant at which stops have an event, or are met; returns the status."""
+    run, stops, before = runs[0], runs[1:], np.empty(runs.size - 1, np.int64)
+    for j in range(stops.size):
+        before[j] = stops[j].regime
+    status = strike_together(motion, runs, u, v, sets, recorder)
+    if status == GOING:
+        status = change_contacts(motion, runs, u, v, sets, recorder)
+    if status != GOING:
+        return status
+    settle(motion, run.clock, stops, u, v, sets)
+    rates = end_of_hops(motion, runs, u, v, sets)
+    hold(motion, run.clock, stops, u, v, sets)
+    for j in range(stops.size):
+        stays = stops[j].regime == SUSTAINED
+        if before[j] == SUSTAINED and not stays:
+            close_touch(recorder, j, run.period, run.clock, rates[j], u, v)
+        elif before[j] != SUSTAINED and stays:
+            begin_stay(motion, runs, j, max(-rates[j], 0.0), u, v, sets, recorder)
+        sets.event[j] = 0
+    run.regime = OUTSIDE
+    for j in range(stops.size - 1, -1, -1):
+        if stops[j].regime != OUTSIDE:
+            run.regime, run.stop = stops[j].regime, j
+    return GOING
+
+
+@kernel
+def exchange_together(motion, run, stops, s, until, series, space, recorder):
+    """Write what the points give to the stops in a step up to `s`, at the clock `until` [s]."""
+    sets = space.sets
+    rates = series.scalars[time_series.RATE]
+    for j in range(stops.size):
+        if stops[j].regime == CONTACT or stops[j].regime == SUSTAINED:
+            row, hops = recorder.marks[j].row, rest_of_hops(run, j, until, recorder)
+            if hops > 0.0:
+                time_series.state(motion, run, hops, series, space.u, space.v)
+                put_state(recorder.log_state[row], 0, space.u, space.v)
+            for n in range(time_series.ORDER):
+                rates[n] = (n + 1.0) * sets.heights[j, n + 1]
+            span, known = (hops, s), recorder.log[row].peak_force
+            work, impulse, force = exchange_of(series, sets.forces[j], rates, UNIFORM, span, known)
+            add_exchange(recorder, j, work if stops[j].regime == CONTACT else 0.0, impulse, force)
+
+
+@part
+def follow_together(motion, u, v, runs, last, clock_end, space, recorder):
+    """Follow closed contacts to the next instant or the end of the run; returns the status."""
+    run, stops, sets, whole = runs[0], runs[1:], space.sets, space.series
+    whole = fitted(whole, time_series.ORDER, motion.modes.shape[1])
+    series = Series(sets.rows, whole.sums, whole.scalars, whole.scaled, whole.places)
+    while True:
+        at_last = run.period == last
+        end = clock_end if at_last else motion.period
+        while end - run.clock > CLOSEST * motion.period:
+            s = step(motion, run.clock, stops, u, v, end - run.clock, sets)
+            run.evaluations += 1
+            run.steps += 1
+            if run.steps > MOST_STEPS:
+                return FAILED_STEPS
+            if not s >= 0.0:
+                return FAILED_SERIES
+            until = run.clock + s if s < end - run.clock else end
+            while sample_due(recorder, run.period, until):
+                time = recorder.sample_clock[recorder.marks[0].sampled] - run.clock
+                time_series.state(motion, run, time, series, space.u, space.v)
+                hold(motion, run.clock + time, stops, space.u, space.v, sets)
+                put_sample(recorder, space.u, space.v)
+            if recorder.log.size > 0:
+                exchange_together(motion, run, stops, s, until, series, space, recorder)
+            time_series.state(motion, run, s, series, u, v)
+            run.clock = until
+            hold(motion, run.clock, stops, u, v, sets)
+            happens = 0
+            for j in range(stops.size):
+                happens = max(happens, sets.event[j])
+                if stops[j].regime == OUTSIDE and s > 0.0:
+                    stops[j].contact_order = 0
+            if happens > 0:
+                return instant(motion, runs, u, v, sets, recorder)
+        while sample_due(recorder, run.period, end):  # samples closer to the end than any step
+            put_sample(recorder, u, v)
+        run.clock = end
+        if at_last:
+            return DONE
+        strobe(run, recorder.marks[0], recorder.strobes, recorder.counts, u, v)
