@@ -97,12 +97,13 @@ class State:
             require(array.size > 0, where, f"is []; it must be {words}")
             shape = array.shape
         if type(self.regime) is not Regime:
-            several = isinstance(self.regime, tuple | list | np.ndarray)
-            given = list(self.regime) if several else [self.regime]
-            if not all(is_number(one) and one in (0, 1, 2, 3, 4) for one in given):
+            one: object = self.regime
+            several = one if isinstance(one, tuple | list | np.ndarray) else None
+            given = [one] if several is None else list(several)
+            if not all(is_number(each) and each in (0, 1, 2, 3, 4) for each in given):
                 raise InvalidValue(f"regime of the state is {shown(self.regime)}; it must be 0, 1, 2, 3 or 4")
-            regimes = tuple(Regime(one) for one in given)
-            object.__setattr__(self, "regime", regimes if several else regimes[0])
+            regimes = tuple(Regime(each) for each in given)
+            object.__setattr__(self, "regime", regimes[0] if several is None else regimes)
         for name, unit in (("time", "s"), ("wait", "s"), ("rebound", "m/s")):
             value = getattr(self, name)
             if type(value) is not float or not math.isfinite(value):  # the usual case without a call

@@ -29,7 +29,7 @@ from contact.engine.contacts import (
     follow_contact,
 )
 from contact.engine.recorder import sample_due, sample_flight, strobe
-from contact.engine.together import follow_together, instant
+from contact.engine.together import follow_together, instant, lone_impact
 from contact.flight.crossing import CROSSES, FREE, UNRESOLVED, searched_flight
 from contact.flight.modal_flow import (
     LOOK,
@@ -177,9 +177,11 @@ def advance(motion, u, v, runs, last, clock_end, recorder, samples):
                 runs[1 + run.stop].regime, runs[1 + run.stop].contact_order = run.regime, run.contact_order
                 run.contact_order = 0
         if several and status == CROSSED:
-            sets.event[:] = 0
-            sets.event[run.stop] = CHANGES
-            status = instant(motion, runs, u, v, sets, recorder)
+            seen = seen_from(motion, run.stop)
+            if not lone_impact(motion, seen, runs, u, v, recorder):
+                sets.event[:] = 0
+                sets.event[run.stop] = CHANGES
+                status = instant(motion, runs, u, v, sets, recorder)
         elif status == CROSSED or status == GRAZED:
             meet(seen_from(motion, run.stop) if several else seen, run, u, v, status == CROSSED, recorder)
             if several:

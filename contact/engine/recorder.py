@@ -10,15 +10,24 @@ import numpy as np
 
 from contact.errors import ContactError
 from contact.flight.modal_flow import propagate_flight, steady_motion
-from contact.flight.motion import Motion, views_of
 from contact.impacts import Impacts, steady_states
 from contact.machine.compiled import inlined, kernel, part
 from contact.oscillator import ImpactOscillator
 from contact.touch import TOUCHES
 from contact.touch.passage import MARKS, TOUCH, new_touches, put_state
+from contact.touch.rests import date_stays
 from contact.trajectory import STAY, Run, State, Trajectory
 
-COPIED = "approach", "rebound", "loss", "impulse", "peak_force", "kind", "stop", "together"  # columns of the log
+COPIED = (
+    "approach",
+    "rebound",
+    "loss",
+    "impulse",
+    "peak_force",
+    "kind",
+    "stop",
+    "together",
+)  # columns of the log
 
 
 class Recorder(NamedTuple):
@@ -112,17 +121,6 @@ def grown(recorder: Recorder) -> Recorder:
     )
 
 
-def improve(views: list[Motion], log: np.ndarray, touches: np.ndarray) -> None:
-    """Better the stays of a finished log by the laws of their stops, from the touches of the same stop in a
-    row."""
-    stays = np.flatnonzero(log["kind"] == STAY)
-    edges = np.flatnonzero(np.diff(log["stop"], prepend=-1, append=-1)) if stays.size else stays
-    for i in np.unique(np.searchsorted(edges, stays, side="right")).tolist() if stays.size else ():
-        a, b = int(edges[i - 1]), int(edges[i])
-        seen = views[int(log["stop"][a])]
-        TOUCHES[seen.law].improve(seen, log[a:b], touches[a:b])
-
-
 def trajectory_of(
     recorder: Recorder,
     run: Run,
@@ -145,7 +143,10 @@ def trajectory_of(
         raise ContactError(**place, detail="the state at one of the times was not written down")
     logged, passed = int(marks["logged"]), run.last - run.first
     log, touches = recorder.log[:logged].copy(), recorder.log_state[:logged].reshape(logged, 2, 2, n).copy()
-    improve(views_of(motion), log, touches)
+    if len(oscillator.stops) == 1:
+        TOUCHES[motion.law].improve(motion, log, touches)
+    elif np.any(log["kind"] == STAY):
+        date_stays(motion, log, touches)
     rows = np.concatenate((recorder.strobes, recorder.samples))
     q, v = rows[:, :n].copy(), rows[:, n:].copy()
     if deviations:

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from beam.parameters import InvalidValue, require
+from contact import touch
 from contact.engine import contacts
 from contact.engine import event_loop as loop
 from contact.engine.recorder import grown, recorder_for, trajectory_of
@@ -14,7 +15,6 @@ from contact.flight.modal_flow import steady_motion, tip_rounding, tip_state
 from contact.flight.motion import LOAD, Motion, views_of
 from contact.flight.sampled_crossing import Samples
 from contact.oscillator import ImpactOscillator
-from contact import touch
 from contact.touch import TOUCHES, force, strike
 from contact.touch.passage import STATE, open_touch
 from contact.trajectory import INSIDE, OUTSIDE, SUSTAINED, WAITING, ImpactKind, Regime, Run, State, Trajectory
@@ -123,7 +123,9 @@ def start_of_several(
     require(state.stop < len(views), f"stop of the state is {state.stop} [1]; {words}")
     if isinstance(state.regime, tuple):
         words = f"it must have one for each of {len(views)} stops"
-        require(len(state.regime) == len(views), f"regime of the state has {len(state.regime)} entries; {words}")
+        require(
+            len(state.regime) == len(views), f"regime of the state has {len(state.regime)} entries; {words}"
+        )
     found = [
         start_of(seen, replace(state, regime=regimes.get(j, OUTSIDE), stop=j), period, clock)
         for j, seen in enumerate(views)
@@ -145,7 +147,9 @@ def state_of(motion: Motion, runs: np.ndarray, displacement: np.ndarray, velocit
         displacement=displacement,
         velocity=velocity,
         time=int(run["period"]) * motion.period + run["clock"],
-        regime=tuple(runs["regime"][1:].tolist()) if np.sum(runs["regime"][1:] > 0) > 1 else int(run["regime"]),
+        regime=tuple(runs["regime"][1:].tolist())
+        if np.sum(runs["regime"][1:] > 0) > 1
+        else int(run["regime"]),
         wait=float(run["wait"]),
         rebound=float(run["rebound"]),
         stop=int(run["stop"]) if run["regime"] != OUTSIDE else 0,

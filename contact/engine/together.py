@@ -33,7 +33,7 @@ from contact.machine.compiled import kernel, part
 from contact.touch import time_series
 from contact.touch.exchange import UNIFORM, exchange_of
 from contact.touch.impulses import MOST, moreau, sequence
-from contact.touch.newton import STEADY_PULL, restitution_at
+from contact.touch.newton import STEADY_PULL, newton_impact, restitution_at
 from contact.touch.passage import CLOSEST, add_exchange, begin, close_touch, open_touch, put_state
 from contact.touch.rests import hopping, hops_end, settle
 from contact.touch.series import Series, fitted
@@ -58,6 +58,34 @@ HOPS, STAYS = 3, 4  # events of a stop that an impulse has left with a velocity;
 def rate_rounding(seen, u, v):
     """Bound of the rounding error of a velocity [m/s], by that of the height and the fastest change."""
     return tip_rounding(seen, u, v) * seen.fastest
+
+
+@part
+def lone_impact(motion, seen, runs, u, v, recorder):
+    """The impact at a stop of Newton's law that is met alone, and left with more than low hops, while all are
+    open.  This most frequent `instant` costs little; returns whether it was one."""
+    run = runs[0]
+    height, rate, pull = tip_state(seen, run.clock, u, v)
+    if seen.law != NEWTON:
+        return False
+    e, _slope = restitution_at(seen, rate)
+    rebound, rounding, stop = e * rate, tip_rounding(seen, u, v), run.stop
+    lowest = 1e3 * rounding * max(abs(pull), rounding * seen.fastest**2) / max(1.0 - e, EPS)
+    if not 0.5 * rebound * rebound > lowest:
+        return False
+    for j in range(runs.size - 1):
+        if j != stop:
+            other = seen_from(motion, j)
+            height, other_rate, pull = tip_state(other, run.clock, u, v)
+            if other_rate > 0.0 and abs(height) <= tip_rounding(other, u, v):
+                return False
+    open_touch(recorder, stop, run.period, run.clock, rate, IMPACT, u, v)
+    newton_impact(seen, v, rate, e)
+    impulse = (1.0 + e) * rate / seen.inverse_mass
+    add_exchange(recorder, stop, 0.5 * (1.0 - e) * impulse * rate, impulse, math.nan)
+    close_touch(recorder, stop, run.period, run.clock, -rebound, u, v)
+    runs[1 + stop].contact_order = 1
+    return True
 
 
 @kernel
@@ -123,7 +151,9 @@ def change_contacts(motion, runs, u, v, sets, recorder):
                 own.contact_order = 1  # an impulse at this instant has turned it round
             elif rate > 0.0 and (near or sets.event[j] == CHANGES):
                 for i in range(stops.size):
-                    if stops[i].regime != OUTSIDE and not (touch.joins(seen) and touch.joins(seen_from(motion, i))):
+                    if stops[i].regime != OUTSIDE and not (
+                        touch.joins(seen) and touch.joins(seen_from(motion, i))
+                    ):
                         run.stop = j
                         return FAILED_SECOND
                 run.stop = j
@@ -156,7 +186,9 @@ def end_of_hops(motion, runs, u, v, sets):
         if sets.event[j] == HOPS:
             speed = -rates[j]
             lowest = 1e3 * tip_rounding(seen, u, v) * pull / max(1.0 - seen.number0, EPS)
-            if (closed or 0.5 * speed * speed <= lowest) and hops_end(motion, run, stops, j, speed, u, v, sets):
+            if (closed or 0.5 * speed * speed <= lowest) and hops_end(
+                motion, run, stops, j, speed, u, v, sets
+            ):
                 sets.event[j], low = STAYS, True
     for j in range(stops.size):
         if sets.event[j] == STAYS:

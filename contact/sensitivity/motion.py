@@ -53,7 +53,7 @@ def motion_derivatives(
     require_one_stop(oscillator, "derivatives")
     require_kind("state", state, State, "a State")
     if state.regime != Regime.OUTSIDE:
-        raise InvalidValue(f"regime of the state is {int(state.regime)}; it must be 0, off the stop")
+        raise InvalidValue(f"regime of the state is {state.regime}; it must be 0, off the stop")
     wanted = require_array("times", () if times is None else times, "s", dimensions=1, words="a rising array")
     several = Sensitivities(oscillator=oscillator, changes=changes)
     run, n = simulate(oscillator, state, periods=periods, times=wanted), oscillator.n_modes

@@ -13,14 +13,16 @@ import math
 
 import numpy as np
 
+from contact.flight.elementary import EPS
 from contact.flight.modal_flow import tip_rounding
-from contact.flight.motion import DECAY, STACKED, WEIGHT, seen_from
+from contact.flight.motion import DECAY, STACKED, WEIGHT, seen_from, stops_of
 from contact.machine.compiled import kernel
 from contact.touch.impulses import DEPENDENT, complementary
 from contact.touch.newton import STEADY_PULL, STEADY_WANTED, acceleration_rounding, low_hop
-from contact.touch.sets import CHANGES, PASSIVE, fill
+from contact.touch.passage import STATE
+from contact.touch.sets import CHANGES, PASSIVE, fill, hold, new_sets
 from contact.touch.time_series import ORDER
-from contact.trajectory import CONTACT, OUTSIDE, SUSTAINED
+from contact.trajectory import CONTACT, IMPACT, OUTSIDE, STAY, SUSTAINED
 
 
 @kernel
@@ -59,7 +61,7 @@ def settle(motion, clock, stops, u, v, sets):
         bound = rounding_of_pull(motion, stops, j, u, v, sets)
         if push[p] * sets.coupling[j, j] > bound and sets.event[j] != CHANGES:
             stops[j].regime, stops[j].contact_order = SUSTAINED, 0
-        elif not left < -bound:
+        elif not left < -bound or sets.event[j] == CHANGES:
             candidates[unsure] = j
             unsure += 1
     if unsure > 0:
@@ -160,3 +162,47 @@ def hopping(motion, clock, stops, j, speed, u, v, sets):
     lost = pull * (1.0 - seen_from(motion, j).number0)
     whole = 2.0 * speed / lost if lost > 0.0 else math.inf
     return whole, (jerk + 0.5 * drag * pull) * whole / (3.0 * pull), share
+
+
+@kernel
+def date_stays(motion, log, states):
+    """Date the stays of a finished log by the impacts before them, as ``newton.improve`` does for one stop.
+
+    Hops count while the other stops stay as they are: open, or closed to the end of the hops.
+    """
+    count = stops_of(motion)
+    sets, stops, latest = new_sets(motion, count), np.zeros(count, STATE), np.full(count, -1)
+    for i in range(log.size):
+        stay, j, least, rest, back, following = log[i], log[i].stop, math.inf, 0.0, 1, 1
+        seen, since = seen_from(motion, j), -math.inf
+        for other in range(count):
+            stops[other].regime = OUTSIDE
+            if stay.kind == STAY and other != j and latest[other] >= 0:
+                row = log[latest[other]]
+                ended = (row.end_period - stay.period) * motion.period + row.end - stay.start
+                if not ended < 0.0:
+                    stops[other].regime = SUSTAINED if row.kind == STAY else CONTACT
+                else:
+                    since = max(since, ended)
+        stops[j].regime, same = SUSTAINED, i if seen.table.shape[1] == 0 else 1
+        lost = max(1.0 - seen.number0, EPS)
+        while stay.kind == STAY and back <= same and log[i - back].kind == IMPACT and log[i - back].stop == j:
+            row, u, v = log[i - back], states[i - back, 1, 0].copy(), states[i - back, 1, 1].copy()
+            before = (row.period - stay.period) * motion.period + row.start
+            if before - stay.start < since:
+                break
+            if back == following:
+                following += 1 + back // 4
+                rounding = tip_rounding(seen, u, v)
+                hold(motion, row.start, stops, u, v, sets)
+                whole, sooner, _mass = hopping(motion, row.start, stops, j, -row.rebound, u, v, sets)
+                error = whole * (sooner**2 + (whole * motion.fastest) ** 2)
+                error += rounding / max(-row.rebound * lost * lost, 1e-300)
+                found = before + whole * (1.0 - sooner)
+                if 0.0 < whole and error < least and (back == 1 or abs(found - rest) <= least):
+                    least, rest = error, found
+            back += 1
+        if least < math.inf:
+            stay.start = rest
+            hold(motion, rest, stops, states[i, 0, 0], states[i, 0, 1], sets)
+        latest[j] = i

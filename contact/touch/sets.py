@@ -32,7 +32,10 @@ from contact.touch.time_series import _EDGE, ORDER, OVERFLOW, longest_of_modes
 from contact.trajectory import CONTACT, INSIDE, OUTSIDE, SUSTAINED
 
 PASSIVE = 4  # order of a stop whose point rests because others hold it: it gives no force
-CHANGES, LEAVES = 1, 2  # events of a stop: a touch, or the end of what its regime says; the release from behind
+CHANGES, LEAVES = (
+    1,
+    2,
+)  # events of a stop: a touch, or the end of what its regime says; the release from behind
 SPEED, AFTER, IMPULSE, LOSS, RESTITUTION, PULL, PUSH = range(7)  # rows of `Sets.numbers`
 
 
