@@ -56,6 +56,10 @@ def require_state(oscillator: ImpactOscillator, state: object) -> State:
     given: State = require_kind("state", state, State, "a State")
     modes, known = given.displacement.size, oscillator.n_modes
     require(modes == known, f"displacement of the state has {modes} modes; the model has {known}")
+    if isinstance(given.regime, tuple):
+        regimes, stops = len(given.regime), len(oscillator.stops)
+        words = f"regime of the state has {regimes} entries; it must have one for each stop, {stops}"
+        require(regimes == stops, words)
     return given
 
 

@@ -29,7 +29,8 @@ from contact.engine.contacts import (
     follow_contact,
 )
 from contact.engine.recorder import sample_due, sample_flight, strobe
-from contact.engine.together import follow_together, instant, lone_impact
+from contact.engine.sets import follow_together
+from contact.engine.together import instant, lone_impact
 from contact.flight.crossing import CROSSES, FREE, UNRESOLVED, searched_flight
 from contact.flight.modal_flow import (
     LOOK,

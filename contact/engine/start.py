@@ -121,11 +121,6 @@ def start_of_several(
     views, regimes = views_of(motion), state.regimes
     words = f"it must be the number of one of {len(views)} stops, from 0 on"
     require(state.stop < len(views), f"stop of the state is {state.stop} [1]; {words}")
-    if isinstance(state.regime, tuple):
-        words = f"it must have one for each of {len(views)} stops"
-        require(
-            len(state.regime) == len(views), f"regime of the state has {len(state.regime)} entries; {words}"
-        )
     found = [
         start_of(seen, replace(state, regime=regimes.get(j, OUTSIDE), stop=j), period, clock)
         for j, seen in enumerate(views)

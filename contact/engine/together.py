@@ -1,12 +1,11 @@
 """Stops that are touched at once: instants at which one is met or let go, and the motion between them.
 
-At an instant the impulses of Newton's law come first (``contact.touch.impulses``), for all stops that are met
-within rounding and all at which a point rests.  Then contacts with a force begin and end.  Last, accelerations
-decide which points stay at rest (``contact.touch.rests``).  Between two instants the closed contacts are
-followed together (``contact.touch.sets``).
+At an instant the impulses of Newton's law come first (``contact.touch.impulses``), for all stops that are
+met within rounding and all at which a point rests.  Then contacts with a force begin and end.  Last,
+accelerations decide which points stay at rest (``contact.touch.rests``).
 
-The state of each stop, its regime and order, is a record of ``contact.touch.passage.STATE`` behind that of the
-run.  The record of the run names the first stop that is closed, and its regime.
+The state of each stop, its regime and order, is a record of ``contact.touch.passage.STATE`` behind that of
+the run.  The record of the run names the first stop that is closed, and its regime.
 """
 
 import math
@@ -14,41 +13,17 @@ import math
 import numpy as np
 
 from contact import touch
-from contact.engine.contacts import (
-    DONE,
-    FAILED_CHATTER,
-    FAILED_SECOND,
-    FAILED_SERIES,
-    FAILED_STEPS,
-    GOING,
-    MOST_STEPS,
-    rest_of_hops,
-)
-from contact.engine.recorder import put_sample, sample_due, strobe
+from contact.engine.contacts import FAILED_CHATTER, FAILED_SECOND, GOING
 from contact.flight.elementary import EPS
 from contact.flight.modal_flow import tip_rounding, tip_state
 from contact.flight.motion import NUMBERS, seen_from
 from contact.laws import NEWTON
 from contact.machine.compiled import kernel, part
-from contact.touch import time_series
-from contact.touch.exchange import UNIFORM, exchange_of
 from contact.touch.impulses import MOST, moreau, sequence
 from contact.touch.newton import STEADY_PULL, newton_impact, restitution_at
-from contact.touch.passage import CLOSEST, add_exchange, begin, close_touch, open_touch, put_state
+from contact.touch.passage import add_exchange, begin, close_touch, open_touch
 from contact.touch.rests import hopping, hops_end, settle
-from contact.touch.series import Series, fitted
-from contact.touch.sets import (
-    AFTER,
-    CHANGES,
-    IMPULSE,
-    LEAVES,
-    LOSS,
-    RESTITUTION,
-    SPEED,
-    hold,
-    push_back,
-    step,
-)
+from contact.touch.sets import AFTER, CHANGES, IMPULSE, LEAVES, LOSS, RESTITUTION, SPEED, hold, push_back
 from contact.trajectory import CONTACT, IMPACT, INSIDE, OUTSIDE, STAY, SUSTAINED
 
 HOPS, STAYS = 3, 4  # events of a stop that an impulse has left with a velocity; that its hops lead to rest
@@ -203,9 +178,9 @@ def begin_stay(motion, runs, j, speed, u, v, sets, recorder):
     """Open the row of a rest that hops of this `speed` lead to."""
     run, stops = runs[0], runs[1:]
     whole, sooner, mass = hopping(motion, run.clock, stops, j, speed, u, v, sets)
-    wait = whole * (1.0 - sooner) if whole <= motion.period and abs(sooner) < STEADY_PULL else 0.0
-    late = int((run.clock + wait) / motion.period)
-    open_touch(recorder, j, run.period + late, run.clock + wait - late * motion.period, 0.0, STAY, u, v)
+    begins = whole * (1.0 - sooner) if whole <= motion.period and abs(sooner) < STEADY_PULL else 0.0
+    late = int((run.clock + begins) / motion.period)
+    open_touch(recorder, j, run.period + late, run.clock + begins - late * motion.period, 0.0, STAY, u, v)
     add_exchange(recorder, j, 0.5 * mass * speed * speed, mass * speed, math.nan)
 
 
@@ -235,64 +210,3 @@ def instant(motion, runs, u, v, sets, recorder):
         if stops[j].regime != OUTSIDE:
             run.regime, run.stop = stops[j].regime, j
     return GOING
-
-
-@kernel
-def exchange_together(motion, run, stops, s, until, series, space, recorder):
-    """Write what the points give to the stops in a step up to `s`, at the clock `until` [s]."""
-    sets = space.sets
-    rates = series.scalars[time_series.RATE]
-    for j in range(stops.size):
-        if stops[j].regime == CONTACT or stops[j].regime == SUSTAINED:
-            row, hops = recorder.marks[j].row, rest_of_hops(run, j, until, recorder)
-            if hops > 0.0:
-                time_series.state(motion, run, hops, series, space.u, space.v)
-                put_state(recorder.log_state[row], 0, space.u, space.v)
-            for n in range(time_series.ORDER):
-                rates[n] = (n + 1.0) * sets.heights[j, n + 1]
-            span, known = (hops, s), recorder.log[row].peak_force
-            work, impulse, force = exchange_of(series, sets.forces[j], rates, UNIFORM, span, known)
-            add_exchange(recorder, j, work if stops[j].regime == CONTACT else 0.0, impulse, force)
-
-
-@part
-def follow_together(motion, u, v, runs, last, clock_end, space, recorder):
-    """Follow closed contacts to the next instant or the end of the run; returns the status."""
-    run, stops, sets, whole = runs[0], runs[1:], space.sets, space.series
-    whole = fitted(whole, time_series.ORDER, motion.modes.shape[1])
-    series = Series(sets.rows, whole.sums, whole.scalars, whole.scaled, whole.places)
-    while True:
-        at_last = run.period == last
-        end = clock_end if at_last else motion.period
-        while end - run.clock > CLOSEST * motion.period:
-            s = step(motion, run.clock, stops, u, v, end - run.clock, sets)
-            run.evaluations += 1
-            run.steps += 1
-            if run.steps > MOST_STEPS:
-                return FAILED_STEPS
-            if not s >= 0.0:
-                return FAILED_SERIES
-            until = run.clock + s if s < end - run.clock else end
-            while sample_due(recorder, run.period, until):
-                time = recorder.sample_clock[recorder.marks[0].sampled] - run.clock
-                time_series.state(motion, run, time, series, space.u, space.v)
-                hold(motion, run.clock + time, stops, space.u, space.v, sets)
-                put_sample(recorder, space.u, space.v)
-            if recorder.log.size > 0:
-                exchange_together(motion, run, stops, s, until, series, space, recorder)
-            time_series.state(motion, run, s, series, u, v)
-            run.clock = until
-            hold(motion, run.clock, stops, u, v, sets)
-            happens = 0
-            for j in range(stops.size):
-                happens = max(happens, sets.event[j])
-                if stops[j].regime == OUTSIDE and s > 0.0:
-                    stops[j].contact_order = 0
-            if happens > 0:
-                return instant(motion, runs, u, v, sets, recorder)
-        while sample_due(recorder, run.period, end):  # samples closer to the end than any step
-            put_sample(recorder, u, v)
-        run.clock = end
-        if at_last:
-            return DONE
-        strobe(run, recorder.marks[0], recorder.strobes, recorder.counts, u, v)

@@ -26,8 +26,8 @@ from contact.machine.compiled import kernel, part
 from contact.trajectory import GRAZE, IMPACT, OUTSIDE, STAY, SUSTAINED
 
 MARKS = np.dtype([(name, "i8") for name in ("logged", "sampled", "strobed", "impacts", "touching", "row")])
-"""Rows in use of log, samples and strobes, and impacts since the last strobe, all in the first record; whether
-a stop is touched, and the row of its last touch, in the record of its number."""
+"""Rows in use of log, samples and strobes, and impacts since the last strobe, all in the first record;
+whether a stop is touched, and the row of its last touch, in the record of its number."""
 
 _NAMES = (
     "period",

@@ -1,9 +1,10 @@
 """Which points stay at rest on their stops, and which hops end there, beside other contacts.
 
-A point with d = d' = 0 stays under a force N >= 0, or leaves with d'' < 0.  Accelerations decide as velocities
-do at an impact (``contact.touch.impulses``), with the pushes of all closed contacts.  Where neither N nor d''
-differs from zero within rounding, the next derivatives decide in the same way: this is so at each release.  A
-point that all of them leave undecided stays.  If other stops hold it as well, it rests without a force.
+A point with d = d' = 0 stays under a force N >= 0, or leaves with d'' < 0.  Accelerations decide as
+velocities do at an impact (``contact.touch.impulses``), with the pushes of all closed contacts.  Where
+neither N nor d'' differs from zero within rounding, the next derivatives decide in the same way: this is so
+at each release.  A point that all of them leave undecided stays.  If other stops hold it as well, it rests
+without a force.
 
 Hops beside other contacts end as those of ``contact.touch.newton`` do.  Their pull is that under the other
 contacts, and the mean force of the hops is the force that would hold the point at rest beside them.

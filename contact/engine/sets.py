@@ -1,0 +1,77 @@
+"""Contacts at several stops, followed together from one instant to the next.
+
+Each step of the closed contacts (``contact.touch.sets``) ends at the next touch or release of a stop, and
+``contact.engine.together`` says what happens there.
+"""
+
+from contact.engine.contacts import DONE, FAILED_SERIES, FAILED_STEPS, MOST_STEPS, rest_of_hops
+from contact.engine.recorder import put_sample, sample_due, strobe
+from contact.engine.together import instant
+from contact.machine.compiled import kernel, part
+from contact.touch import time_series
+from contact.touch.exchange import UNIFORM, exchange_of
+from contact.touch.passage import CLOSEST, add_exchange, put_state
+from contact.touch.series import Series, fitted
+from contact.touch.sets import hold, step
+from contact.trajectory import CONTACT, OUTSIDE, SUSTAINED
+
+
+@kernel
+def exchange_together(motion, run, stops, s, until, series, space, recorder):
+    """Write what the points give to the stops in a step up to `s`, at the clock `until` [s]."""
+    sets = space.sets
+    rates = series.scalars[time_series.RATE]
+    for j in range(stops.size):
+        if stops[j].regime == CONTACT or stops[j].regime == SUSTAINED:
+            row, hops = recorder.marks[j].row, rest_of_hops(run, j, until, recorder)
+            if hops > 0.0:
+                time_series.state(motion, run, hops, series, space.u, space.v)
+                put_state(recorder.log_state[row], 0, space.u, space.v)
+            for n in range(time_series.ORDER):
+                rates[n] = (n + 1.0) * sets.heights[j, n + 1]
+            span, known = (hops, s), recorder.log[row].peak_force
+            work, impulse, force = exchange_of(series, sets.forces[j], rates, UNIFORM, span, known)
+            add_exchange(recorder, j, work if stops[j].regime == CONTACT else 0.0, impulse, force)
+
+
+@part
+def follow_together(motion, u, v, runs, last, clock_end, space, recorder):
+    """Follow closed contacts to the next instant or the end of the run; returns the status."""
+    run, stops, sets, whole = runs[0], runs[1:], space.sets, space.series
+    whole = fitted(whole, time_series.ORDER, motion.modes.shape[1])
+    series = Series(sets.rows, whole.sums, whole.scalars, whole.scaled, whole.places)
+    while True:
+        at_last = run.period == last
+        end = clock_end if at_last else motion.period
+        while end - run.clock > CLOSEST * motion.period:
+            s = step(motion, run.clock, stops, u, v, end - run.clock, sets)
+            run.evaluations += 1
+            run.steps += 1
+            if run.steps > MOST_STEPS:
+                return FAILED_STEPS
+            if not s >= 0.0:
+                return FAILED_SERIES
+            until = run.clock + s if s < end - run.clock else end
+            while sample_due(recorder, run.period, until):
+                time = recorder.sample_clock[recorder.marks[0].sampled] - run.clock
+                time_series.state(motion, run, time, series, space.u, space.v)
+                hold(motion, run.clock + time, stops, space.u, space.v, sets)
+                put_sample(recorder, space.u, space.v)
+            if recorder.log.size > 0:
+                exchange_together(motion, run, stops, s, until, series, space, recorder)
+            time_series.state(motion, run, s, series, u, v)
+            run.clock = until
+            hold(motion, run.clock, stops, u, v, sets)
+            happens = 0
+            for j in range(stops.size):
+                happens = max(happens, sets.event[j])
+                if stops[j].regime == OUTSIDE and s > 0.0:
+                    stops[j].contact_order = 0
+            if happens > 0:
+                return instant(motion, runs, u, v, sets, recorder)
+        while sample_due(recorder, run.period, end):  # samples closer to the end than any step
+            put_sample(recorder, u, v)
+        run.clock = end
+        if at_last:
+            return DONE
+        strobe(run, recorder.marks[0], recorder.strobes, recorder.counts, u, v)
