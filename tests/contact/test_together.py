@@ -33,7 +33,7 @@ def hit(rows, e, v, law="moreau", held=None):
     bodies = modes(rows, e, 1.0, load=load, simultaneous=law)
     run = simulate(bodies, State(displacement=start, velocity=v, regime=regime), duration=0.5)
     hits, found = run.impacts.kind == ImpactKind.IMPACT, run.end.velocity - 0.25 * load
-    np.testing.assert_allclose(run.impacts.start[hits], 0.25, rtol=1e-13)
+    np.testing.assert_allclose(run.impacts.start[hits], 0.25, rtol=1e-12)
     stop, impulse = run.impacts.stop[hits], run.impacts.impulse[hits]
     np.testing.assert_allclose(run.impacts.approach[hits], rows[stop] @ v, rtol=1e-12)
     np.testing.assert_allclose(run.impacts.rebound[hits], rows[stop] @ found, rtol=1e-12, atol=1e-12)
