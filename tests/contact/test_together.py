@@ -26,16 +26,15 @@ def modes(rows, e, gaps, *, omega=0.0, decay=0.0, gamma=0.0, **more) -> ImpactOs
 
 
 def hit(rows, e, v, law="moreau", held=None):
-    """Velocities after all stops are hit at t = 1/4, and the impacts; a weak load holds the stop `held`."""
+    """Velocities after all stops are hit at t = 1/4 on the way along v; a weak load holds the stop `held`."""
     load = 1e-3 * rows[held] if held is not None else 0.0 * v
     regime = tuple(Regime.SUSTAINED if number == held else Regime.OUTSIDE for number in range(len(rows)))
-    start = np.linalg.lstsq(rows, np.ones(len(rows)))[0] - 0.25 * v
-    bodies = modes(rows, e, 1.0, load=load, simultaneous=law)
-    run = simulate(bodies, State(displacement=start, velocity=v, regime=regime), duration=0.5)
+    bodies = modes(rows, e, np.maximum(rows @ v, 0.0), load=load, simultaneous=law)
+    run = simulate(bodies, State(displacement=0.75 * v, velocity=v, regime=regime), duration=0.5)
     hits, found = run.impacts.kind == ImpactKind.IMPACT, run.end.velocity - 0.25 * load
     np.testing.assert_allclose(run.impacts.start[hits], 0.25, rtol=1e-12)
     stop, impulse = run.impacts.stop[hits], run.impacts.impulse[hits]
-    np.testing.assert_allclose(run.impacts.approach[hits], rows[stop] @ v, rtol=1e-12)
+    np.testing.assert_allclose(run.impacts.approach[hits], rows[stop] @ v, rtol=1e-12, atol=1e-14)
     np.testing.assert_allclose(run.impacts.rebound[hits], rows[stop] @ found, rtol=1e-12, atol=1e-12)
     np.testing.assert_allclose(impulse @ rows[stop], v - found, rtol=1e-12, atol=1e-12)
     assert len(set(stop)) == len(rows) - (held is not None) and np.all(run.impacts.together[hits])
@@ -71,11 +70,13 @@ def test_table(name):
 def test_random_impacts():
     rng = np.random.default_rng(56)
     for count in rng.integers(2, 6, 60):
-        rows, e = np.eye(count, 5) + rng.normal(0.0, 0.4, (count, 5)), rng.uniform(0.0, 1.0)
-        speeds, each = rng.uniform(0.1, 1.0, count), rng.uniform(0.0, 1.0, count)
-        v = np.linalg.lstsq(rows, speeds)[0]
+        rows, v = np.eye(count, 5) + rng.normal(0.0, 0.4, (count, 5)), rng.uniform(0.5, 1.0, 5)
+        rows *= np.sign(rows @ v)[:, None]
+        e, each = rng.uniform(0.0, 1.0), rng.uniform(0.0, 1.0, count)
+        if (rows @ v).min() < 0.1:  # a slow touch has a time that is less certain
+            continue
         for own in (e + 0.0 * each, each):
-            u = np.linalg.lstsq(rows, (1.0 + own) * speeds)[0]
+            u = np.linalg.lstsq(rows, (1.0 + own) * (rows @ v))[0]
             known = v - rows.T @ nnls(rows.T, u)[0]
             np.testing.assert_allclose(hit(rows, own, v), known, rtol=0, atol=1e-12 * np.abs(v).max())
         one_by_one = hit(rows, e, v, "sequential")
