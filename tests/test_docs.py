@@ -28,7 +28,7 @@ TEXTS = {path.stem: path.read_text("utf-8") for path in (ROOT / "README.md", *(R
 PLAIN = " ".join(" ".join(TEXTS.values()).split())
 
 
-@pytest.mark.parametrize("name", ["README", "scene"])
+@pytest.mark.parametrize("name", ["README", "scene", "several_stops"])
 def test_the_code_runs_and_prints_what_its_comments_promise(name, capsys):
     (block,) = re.findall(r"```python\n(.*?)```", TEXTS[name], flags=re.DOTALL)
     exec(compile(block, name, "exec"), {})
