@@ -51,9 +51,9 @@ class Impacts:
         Values of `ImpactKind`.
     stop : ndarray of int, shape (n_impacts,)
         Numbers of the stops, from 0 on.
-    together : ndarray of int, shape (n_impacts,)
-        1 if other stops were met at the same instant, within rounding, or rested then, so that the law of all
-        gave this impulse; else 0.
+    together : ndarray of bool, shape (n_impacts,)
+        Whether the impact of Newton's law was one with those of other stops, that were met at the same
+        instant within rounding, or at which a point rested.
     deviations_start, deviations_end : ndarray, shape (n_impacts, 2, n_modes)
         Deviations (u, v) just before the touch and just after the release.
     """
@@ -82,14 +82,14 @@ class Impacts:
     ) -> Impacts:
         """Touches that another program has found; `numbers` are approach to stop of the list above.
 
-        Without impulse or peak force these are NaN, and without `stop` or `together` these are 0.
+        Without impulse or peak force these are NaN; without them `stop` is 0 and `together` false.
 
         `times` [s] has the shape (2, n_impacts), and the modal states (q, q') have (2, n_impacts, 2,
         n_modes): first the touches, then the releases.
         """
         count = times.shape[1]
         unknown = dict.fromkeys(("impulse", "peak_force"), np.full(count, np.nan))
-        unknown["stop"] = unknown["together"] = np.zeros(count, dtype=np.int64)
+        unknown |= {"stop": np.zeros(count, dtype=np.int64), "together": np.zeros(count, dtype=bool)}
         given, valid = ", ".join(sorted(numbers.keys() - unknown.keys())), "approach, kind, loss, rebound"
         require(given == valid, f"numbers has {given or 'no entries'}; it must have {valid}")
         period, clock = split_time(times[0], oscillator.period)

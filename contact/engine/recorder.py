@@ -13,21 +13,10 @@ from contact.flight.modal_flow import propagate_flight, steady_motion
 from contact.impacts import Impacts, steady_states
 from contact.machine.compiled import inlined, kernel, part
 from contact.oscillator import ImpactOscillator
-from contact.touch import TOUCHES
 from contact.touch.passage import MARKS, TOUCH, new_touches, put_state
-from contact.touch.rests import date_stays
 from contact.trajectory import STAY, Run, State, Trajectory
 
-COPIED = (
-    "approach",
-    "rebound",
-    "loss",
-    "impulse",
-    "peak_force",
-    "kind",
-    "stop",
-    "together",
-)  # columns of the log
+COPIED = "approach", "rebound", "loss", "impulse", "peak_force", "kind", "stop"  # columns of the log
 
 
 class Recorder(NamedTuple):
@@ -143,10 +132,6 @@ def trajectory_of(
         raise ContactError(**place, detail="the state at one of the times was not written down")
     logged, passed = int(marks["logged"]), run.last - run.first
     log, touches = recorder.log[:logged].copy(), recorder.log_state[:logged].reshape(logged, 2, 2, n).copy()
-    if len(oscillator.stops) == 1:
-        TOUCHES[motion.law].improve(motion, log, touches)
-    elif np.any(log["kind"] == STAY):
-        date_stays(motion, log, touches)
     rows = np.concatenate((recorder.strobes, recorder.samples))
     q, v = rows[:, :n].copy(), rows[:, n:].copy()
     if deviations:
@@ -168,6 +153,7 @@ def trajectory_of(
         clock=(log["period"] - number) * period + log["start"],
         end_clock=(log["end_period"] - number) * period + log["end"],
         **{name: log[name].copy() for name in COPIED},
+        together=log["together"] == 1,
         deviations_start=touches[:, 0],
         deviations_end=touches[:, 1],
     )

@@ -15,7 +15,7 @@ import numpy as np
 from contact import touch
 from contact.engine.contacts import FAILED_CHATTER, FAILED_SECOND, GOING
 from contact.flight.elementary import EPS
-from contact.flight.modal_flow import tip_rounding, tip_state
+from contact.flight.modal_flow import mode_acceleration, tip_rounding, tip_state
 from contact.flight.motion import NUMBERS, seen_from
 from contact.laws import NEWTON
 from contact.machine.compiled import kernel, part
@@ -52,7 +52,7 @@ def lone_impact(motion, seen, runs, u, v, recorder):
         if j != stop:
             other = seen_from(motion, j)
             height, other_rate, pull = tip_state(other, run.clock, u, v)
-            if other_rate > 0.0 and abs(height) <= tip_rounding(other, u, v):
+            if other_rate > 0.0 and abs(height) <= tip_rounding(other, u, v) + other_rate * rounding / rate:
                 return False
     open_touch(recorder, stop, run.period, run.clock, rate, IMPACT, u, v)
     newton_impact(seen, v, rate, e)
@@ -61,6 +61,34 @@ def lone_impact(motion, seen, runs, u, v, recorder):
     close_touch(recorder, stop, run.period, run.clock, -rebound, u, v)
     runs[1 + stop].contact_order = 1
     return True
+
+
+@kernel
+def wait_for_ties(motion, run, stops, u, v, sets):
+    """Go on to the last of the instants at which stops are met, if rounding leaves their order open.
+
+    A stop that is met slowly is met within its rounding bound over its velocity.
+    """
+    wait = 0.0
+    for j in range(stops.size):
+        slow = seen_from(motion, j)
+        if stops[j].regime == OUTSIDE and sets.event[j] == CHANGES:
+            _height, rate, _pull = tip_state(slow, run.clock, u, v)
+            for i in range(stops.size):
+                height, faster, _pull = tip_state(seen_from(motion, i), run.clock, u, v)
+                late = -height / max(faster, rate)
+                if (
+                    stops[i].regime == OUTSIDE
+                    and faster > rate > 0.0
+                    and late * rate <= tip_rounding(slow, u, v)
+                ):
+                    wait = max(wait, late)
+    if wait > 0.0:
+        for k in range(u.size):
+            pull = mode_acceleration(motion, k, u[k], v[k])
+            u[k] += wait * v[k]
+            v[k] += wait * pull
+        run.clock += wait
 
 
 @kernel
@@ -136,7 +164,7 @@ def change_contacts(motion, runs, u, v, sets, recorder):
                 own.regime, own.contact_order = run.regime, 0
         elif touch.joins(seen):
             push = touch.coefficient(seen, 0, (height, rate))
-            if regime == CONTACT and (sets.event[j] == CHANGES or push <= 0.0):
+            if regime == CONTACT and (sets.event[j] == CHANGES or push < -rounding * seen.number0):
                 own.regime = INSIDE if height > rounding else OUTSIDE
             elif regime == INSIDE and sets.event[j] != LEAVES and (sets.event[j] == CHANGES or push > 0.0):
                 own.regime = CONTACT
@@ -174,14 +202,27 @@ def end_of_hops(motion, runs, u, v, sets):
 
 
 @kernel
-def begin_stay(motion, runs, j, speed, u, v, sets, recorder):
-    """Open the row of a rest that hops of this `speed` lead to."""
-    run, stops = runs[0], runs[1:]
-    whole, sooner, mass = hopping(motion, run.clock, stops, j, speed, u, v, sets)
-    begins = whole * (1.0 - sooner) if whole <= motion.period and abs(sooner) < STEADY_PULL else 0.0
-    late = int((run.clock + begins) / motion.period)
-    open_touch(recorder, j, run.period + late, run.clock + begins - late * motion.period, 0.0, STAY, u, v)
-    add_exchange(recorder, j, 0.5 * mass * speed * speed, mass * speed, math.nan)
+def begin_stays(motion, runs, speeds, u, v, sets, recorder):
+    """Open the rows of rests that hops of these `speeds` lead to; NaN for the other stops."""
+    run, stops, some = runs[0], runs[1:], False
+    hops = np.zeros(stops.size)
+    for j in range(stops.size):
+        hops[j], some = (0.0, some) if math.isnan(speeds[j]) else (speeds[j], True)
+    if not some:
+        return
+    span, rate = hopping(motion, run.clock, stops, hops, u, v, sets)
+    given = sets.numbers[IMPULSE]
+    for j in range(stops.size):
+        if not math.isnan(speeds[j]):
+            whole = span / max(1.0 - seen_from(motion, j).number0, EPS)
+            begins = whole * (1.0 - rate * whole)
+            begins = begins if whole <= motion.period and abs(rate * whole) < STEADY_PULL else 0.0
+            late = int((run.clock + begins) / motion.period)
+            open_touch(
+                recorder, j, run.period + late, run.clock + begins - late * motion.period, 0.0, STAY, u, v
+            )
+        if stops[j].regime == SUSTAINED:
+            add_exchange(recorder, j, 0.5 * hops[j] * given[j], given[j], math.nan)
 
 
 @kernel
@@ -190,6 +231,7 @@ def instant(motion, runs, u, v, sets, recorder):
     run, stops, before = runs[0], runs[1:], np.empty(runs.size - 1, np.int64)
     for j in range(stops.size):
         before[j] = stops[j].regime
+    wait_for_ties(motion, run, stops, u, v, sets)
     status = strike_together(motion, runs, u, v, sets, recorder)
     if status == GOING:
         status = change_contacts(motion, runs, u, v, sets, recorder)
@@ -202,9 +244,11 @@ def instant(motion, runs, u, v, sets, recorder):
         stays = stops[j].regime == SUSTAINED
         if before[j] == SUSTAINED and not stays:
             close_touch(recorder, j, run.period, run.clock, rates[j], u, v)
-        elif before[j] != SUSTAINED and stays:
-            begin_stay(motion, runs, j, max(-rates[j], 0.0), u, v, sets, recorder)
+        elif stops[j].regime == OUTSIDE and stops[j].contact_order == 1 and rates[j] > 0.0:
+            stops[j].contact_order = 0  # an impulse at another stop sends the point back at once
+        rates[j] = max(-rates[j], 0.0) if stays and before[j] != SUSTAINED else math.nan
         sets.event[j] = 0
+    begin_stays(motion, runs, rates, u, v, sets, recorder)
     run.regime = OUTSIDE
     for j in range(stops.size - 1, -1, -1):
         if stops[j].regime != OUTSIDE:

@@ -17,17 +17,21 @@ stretch that no proof settles, with h down to rounding, is reported as unresolve
 
 import math
 
+import numpy as np
+
 from contact.flight import modal_flow as rows
 from contact.flight.bounds import PEAK, ROOT, SKIP, certify, free_from, free_until, lowest_mode, peak_of_drive
 from contact.flight.elementary import EPS
 from contact.flight.modal_flow import flow, load_state, new_flight, tip_rounding, tip_steady
 from contact.flight.motion import DECAY, INVERSE_OMEGA, LOAD, SQUARE, WEIGHT
+from contact.flight.polynomial_root import horner
 from contact.flight.tip_search import find_peak, find_root, tip_now
 from contact.machine.compiled import kernel, part
 from contact.machine.vector_loops import LANES
 
 FREE, CROSSES, GRAZES, UNRESOLVED = range(4)
 BELOW = -1  # outcome of a stretch with a peak that stays below the stop: the search goes on
+HOP, HOP_ORDER = 1.0, 20  # longest hop, in radians of the fastest mode or the drive; order of its series
 GRAZE_TOLERANCE = 1e-13  # largest rounding bound, relative to the gap, with which a peak within it is a graze
 
 
@@ -186,6 +190,31 @@ def outcome_at_peak(motion, flight, base, point, step, duration, m3, margin):
 
 
 @kernel
+def end_of_hop(motion, flight, base, s):
+    """The end of a short flight from the wall and back, near `s`, to all digits.
+
+    Heights of a low hop are small differences of large numbers.  Here height zero at the start is exact, and
+    the end is a root of y(s)/s, from the Taylor series of the modes.
+    """
+    w, modes, height = motion.drive, motion.modes, np.zeros(HOP_ORDER)
+    _level, height[0], pull = tip_steady(motion, base)
+    height[1] = 0.5 * pull
+    for n in range(2, HOP_ORDER):
+        height[n] = -w * w * height[n - 2] / (n * (n + 1.0))
+    for k in range(motion.size):
+        low, high, load = flight[rows.START_U, k], flight[rows.START_V, k], modes[LOAD, k]
+        for n in range(HOP_ORDER):
+            height[n] += modes[WEIGHT, k] * high
+            pull = load - (n + 1.0) * modes[DECAY, k] * high - modes[SQUARE, k] * low
+            low, high, load = high, pull / ((n + 1.0) * (n + 2.0)), 0.0  # the load is constant
+    found = s
+    for _ in range(3):
+        y, slope, _bend = horner(height, 1.0, 0.0, found)
+        found -= y / slope if slope > 0.0 else 0.0
+    return found if abs(found - s) < 0.1 * s else s
+
+
+@kernel
 def searched_flight(motion, flight, base, duration, contact_order):
     """`first_crossing` of the flight that starts at rows START_U and START_V of its workspace."""
     must, whole = amplitudes(motion, flight)
@@ -200,6 +229,8 @@ def searched_flight(motion, flight, base, duration, contact_order):
         outcome, s = searched_span(
             motion, flight, base, span, 0 if off else contact_order, peak, must, margin
         )
+        if outcome == CROSSES and contact_order == 1 and s * motion.fastest < HOP:
+            s = end_of_hop(motion, flight, base, s)
         if outcome != FREE or s >= duration:
             return outcome, min(s, duration)
         first, end = s, duration

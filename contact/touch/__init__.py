@@ -61,8 +61,7 @@ What a file offers.  `motion` is the oscillator, `run` the state of the motion
                                               `free` modes and the modal state (q, q')
     repeated_touch(motion, speed, period)     in closed form, the touch that repeats after some drive periods,
                                               as (jump, duration, leaves) of ``single_impact.Kick``, or None
-    improve(motion, log, states)              betters the finished log of a run, its rows and states
-The last three are plain functions.  What a file leaves out is that of ``contact.touch.time_series``, or else
+The last two are plain functions.  What a file leaves out is that of ``contact.touch.time_series``, or else
 that of ``contact.touch.series``.
 
 An unknown code is an error wherever a law is needed.  A kernel takes no functions as arguments; `by_law`

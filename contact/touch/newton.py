@@ -48,7 +48,7 @@ from contact.speed_table import at_speed
 from contact.touch import time_series
 from contact.touch.exchange import UNIFORM, exchange_of
 from contact.touch.time_series import FORCE, begin, extend, free_pull, longest_step
-from contact.trajectory import IMPACT, OUTSIDE, STAY, SUSTAINED
+from contact.trajectory import OUTSIDE, SUSTAINED
 
 LAW, METHOD = "NewtonRestitution", "event-driven"
 REGIMES = (OUTSIDE, SUSTAINED)
@@ -156,35 +156,6 @@ def hopping(motion, clock, u, v, rebound):
         return 0.0, 0.0
     whole = 2.0 * rebound / lost
     return whole, (jerk + 0.5 * drag * pull) * whole / (3.0 * pull)
-
-
-@kernel
-def improve(motion, log, states):
-    """Date the stays by the impacts before them.
-
-    The last hops are so low that rounding leaves their speed v two digits.  Hops before them give the time of
-    rest as well.  Its error is the rounding of the tip displacement over v (1 - e)^2, as the errors of all
-    hops add up, and W (W Omega)^2 for a pull that changes at the frequency Omega.  The best is taken
-    that agrees with those after it.
-    """
-    lost, rest = max(1.0 - motion.number0, EPS), 0.0
-    for i in range(1, log.size):
-        stay, least, back, following = log[i], math.inf, 1, 1
-        same = i if motion.table.shape[1] == 0 else 1  # restitution of earlier hops is that of the last ones
-        while stay.kind == STAY and back <= same and log[i - back].kind == IMPACT:
-            if back == following:
-                following += 1 + back // 4
-                row, u, v = log[i - back], states[i - back, 1, 0], states[i - back, 1, 1]
-                whole, sooner = hopping(motion, row.start, u, v, -row.rebound)
-                error = whole * (sooner**2 + (whole * motion.fastest) ** 2)
-                error += tip_rounding(motion, u, v) / max(-row.rebound * lost * lost, 1e-300)
-                found = (row.period - stay.period) * motion.period + row.start + whole * (1.0 - sooner)
-                if 0.0 < whole and error < least and (back == 1 or abs(found - rest) <= least):
-                    least, rest = error, found
-            back += 1
-        if least < math.inf:
-            stay.start = rest
-            hold(motion, rest, states[i, 0, 0], states[i, 0, 1])
 
 
 @kernel

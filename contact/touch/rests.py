@@ -6,24 +6,21 @@ neither N nor d'' differs from zero within rounding, the next derivatives decide
 at each release.  A point that all of them leave undecided stays.  If other stops hold it as well, it rests
 without a force.
 
-Hops beside other contacts end as those of ``contact.touch.newton`` do.  Their pull is that under the other
-contacts, and the mean force of the hops is the force that would hold the point at rest beside them.
+Hops beside other contacts end as those of ``contact.touch.newton`` do.  The mean forces of hops are the
+forces N that would hold their points at rest beside the other contacts.  With the speeds w over these stops,
+and impulses that take them off, G p = w, the hops end after W = 2 w p/((1 - e) w N), if N is constant.
 """
-
-import math
 
 import numpy as np
 
-from contact.flight.elementary import EPS
 from contact.flight.modal_flow import tip_rounding
-from contact.flight.motion import DECAY, STACKED, WEIGHT, seen_from, stops_of
+from contact.flight.motion import DECAY, STACKED, WEIGHT, seen_from
 from contact.machine.compiled import kernel
 from contact.touch.impulses import DEPENDENT, complementary
 from contact.touch.newton import STEADY_PULL, STEADY_WANTED, acceleration_rounding, low_hop
-from contact.touch.passage import STATE
-from contact.touch.sets import CHANGES, PASSIVE, fill, hold, new_sets
+from contact.touch.sets import CHANGES, IMPULSE, PASSIVE, fill
 from contact.touch.time_series import ORDER
-from contact.trajectory import CONTACT, IMPACT, OUTSIDE, STAY, SUSTAINED
+from contact.trajectory import CONTACT, OUTSIDE, SUSTAINED
 
 
 @kernel
@@ -135,75 +132,34 @@ def hops_end(motion, run, stops, j, speed, u, v, sets):
 
 
 @kernel
-def hopping(motion, clock, stops, j, speed, u, v, sets):
-    """W of hops that begin with this `speed` at stop `j` [s], the part by which they end earlier [1], and the
-    mass that hops [kg].
+def hopping(motion, clock, stops, speeds, u, v, sets):
+    """W (1 - e) of hops that begin with these `speeds` over stops that then hold the points [s], and the rate
+    at which they end earlier, as a part of W over W [1/s].
 
-    The state (u, v) is that of the rest at which they end.  The mass is zero if stop `j` gives no force.
+    The state (u, v) is that of the rest at which they end.  Row IMPULSE of ``Sets.numbers`` is filled with
+    the impulses that take the speeds off, at each stop that holds its point.  Without a pull W is zero.
     """
-    held, share, drag = fill(motion, clock, stops, u, v, 3, sets), 0.0, 0.0
-    decay, modes = motion.modes[DECAY], motion.modes
+    held, given = fill(motion, clock, stops, u, v, 3, sets), sets.numbers[IMPULSE]
+    decay, modes, mass, pull, rise, drag = motion.modes[DECAY], motion.modes, 0.0, 0.0, 0.0, 0.0
+    given[:] = 0.0
     for a in range(held):
-        if sets.members[a] == j:
-            share = sets.inverse[a, a]
-            for k in range(decay.size):
-                x = 0.0
-                for b in range(held):
-                    x += sets.inverse[a, b] * modes[STACKED * sets.members[b] + WEIGHT, k]
-                drag += decay[k] * x * x / share
-            for i in range(stops.size):
-                if stops[i].regime == CONTACT:
-                    x = 0.0
-                    for b in range(held):
-                        x += sets.inverse[a, b] * sets.coupling[sets.members[b], i]
-                    drag += seen_from(motion, i).number1 * x * x / share
-    if not (share > 0.0 and sets.forces[j, 0] > 0.0):
-        return 0.0, 0.0, share
-    pull, jerk = sets.forces[j, 0] / share, sets.forces[j, 1] / share
-    lost = pull * (1.0 - seen_from(motion, j).number0)
-    whole = 2.0 * speed / lost if lost > 0.0 else math.inf
-    return whole, (jerk + 0.5 * drag * pull) * whole / (3.0 * pull), share
-
-
-@kernel
-def date_stays(motion, log, states):
-    """Date the stays of a finished log by the impacts before them, as ``newton.improve`` does for one stop.
-
-    Hops count while the other stops stay as they are: open, or closed to the end of the hops.
-    """
-    count = stops_of(motion)
-    sets, stops, latest = new_sets(motion, count), np.zeros(count, STATE), np.full(count, -1)
-    for i in range(log.size):
-        stay, j, least, rest, back, following = log[i], log[i].stop, math.inf, 0.0, 1, 1
-        seen, since = seen_from(motion, j), -math.inf
-        for other in range(count):
-            stops[other].regime = OUTSIDE
-            if stay.kind == STAY and other != j and latest[other] >= 0:
-                row = log[latest[other]]
-                ended = (row.end_period - stay.period) * motion.period + row.end - stay.start
-                if not ended < 0.0:
-                    stops[other].regime = SUSTAINED if row.kind == STAY else CONTACT
-                else:
-                    since = max(since, ended)
-        stops[j].regime, same = SUSTAINED, i if seen.table.shape[1] == 0 else 1
-        lost = max(1.0 - seen.number0, EPS)
-        while stay.kind == STAY and back <= same and log[i - back].kind == IMPACT and log[i - back].stop == j:
-            row, u, v = log[i - back], states[i - back, 1, 0].copy(), states[i - back, 1, 1].copy()
-            before = (row.period - stay.period) * motion.period + row.start
-            if before - stay.start < since:
-                break
-            if back == following:
-                following += 1 + back // 4
-                rounding = tip_rounding(seen, u, v)
-                hold(motion, row.start, stops, u, v, sets)
-                whole, sooner, _mass = hopping(motion, row.start, stops, j, -row.rebound, u, v, sets)
-                error = whole * (sooner**2 + (whole * motion.fastest) ** 2)
-                error += rounding / max(-row.rebound * lost * lost, 1e-300)
-                found = before + whole * (1.0 - sooner)
-                if 0.0 < whole and error < least and (back == 1 or abs(found - rest) <= least):
-                    least, rest = error, found
-            back += 1
-        if least < math.inf:
-            stay.start = rest
-            hold(motion, rest, stops, states[i, 0, 0], states[i, 0, 1], sets)
-        latest[j] = i
+        j = sets.members[a]
+        for b in range(held):
+            given[j] += sets.inverse[a, b] * speeds[sets.members[b]]
+        mass += speeds[j] * given[j]
+        pull += speeds[j] * sets.forces[j, 0]
+        rise += speeds[j] * sets.forces[j, 1]
+    for k in range(decay.size):
+        x = 0.0
+        for a in range(held):
+            x += given[sets.members[a]] * modes[STACKED * sets.members[a] + WEIGHT, k]
+        drag += decay[k] * x * x
+    for i in range(stops.size):
+        if stops[i].regime == CONTACT:
+            x = 0.0
+            for a in range(held):
+                x += given[sets.members[a]] * sets.coupling[sets.members[a], i]
+            drag += seen_from(motion, i).number1 * x * x
+    if not (mass > 0.0 and pull > 0.0):
+        return 0.0, 0.0
+    return 2.0 * mass / pull, (rise / pull + 0.5 * drag / mass) / 3.0

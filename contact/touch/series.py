@@ -101,10 +101,6 @@ def repeated_touch(motion, speed, period):
     return None
 
 
-def improve(motion, log, states):
-    """The log is right to rounding as it is."""
-
-
 @part
 def product(x, y, n):
     """Order n of the product of two series; the newest terms are added last."""
