@@ -53,12 +53,12 @@ from contact.trajectory import OUTSIDE, SUSTAINED
 LAW, METHOD = "NewtonRestitution", "event-driven"
 REGIMES = (OUTSIDE, SUSTAINED)
 
-LOST_HOP, LOWEST_HOP = 4.0, 200.0
+LOST_HOP, LOWEST_HOP = 4.0, 20.0
 """Heights of hops, in rounding bounds of the tip displacement.  Hops lower than `LOWEST_HOP` are a stay if
-they end: two digits of the height are then still good.  A hop loses 2(1 - e) of its height, and rounding may
-move its end by as much as its bound.  Where the loss is smaller than the bound, hops need not get lower, and
-are a stay if they end in this period of the drive.  A hop lower than `LOST_HOP` is lost in rounding, which
-moves its start, its top and the search for its end by a bound each.  It is a stay even if it never ends."""
+they end.  A hop loses 2(1 - e) of its height, and the search for its end may be wrong by the bound.  Where
+the loss is smaller than the bound, hops need not get lower, and are a stay if they end in this period of the
+drive.  A hop lower than `LOST_HOP` is lost in rounding, which moves its start, its top and the search for its
+end by a bound each.  It is a stay even if it never ends."""
 
 STEADY_PULL = 0.1
 """Part of itself by which the acceleration of the tip may change until the hops end: W is then right to 4 %,
