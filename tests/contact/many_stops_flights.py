@@ -25,7 +25,8 @@ TIE, TINY = Exact("1e-30"), Exact("1e-45")
 
 
 def numbers(values: list) -> np.ndarray:
-    return exact(np.array(values, dtype=object))
+    with np.errstate(invalid="ignore"):  # NaN
+        return exact(np.array(values, dtype=object))
 
 
 def solve(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
@@ -119,6 +120,9 @@ class System:
                 rigid=rigid,
                 hold=[hold @ a for a in (stiff, damp, force, self.force)],
             )
+            one = self.known[key]
+            if np.any(abs(real(one.left.T @ one.shapes) - base @ base.T) > 1e-30):
+                raise ArithmeticError("the modes are not complete")
         return self.known[key]
 
 

@@ -178,13 +178,12 @@ def distance(problem: dict, one: dict, other: dict) -> tuple[float, float]:
     """
     w, parts, hops = Exact(problem["w"]), [], [ZERO]
     for name, width in (("touches", 6), ("stays", 3)):
-        a, b = (sorted(list(x) for x in answer[name]) for answer in (one, other))
-        if [x[0] for x in a] != [x[0] for x in b]:
+        a, b = (sorted(map(list, numbers(answer[name]).reshape(-1, width))) for answer in (one, other))
+        a, b = (np.array(x, dtype=object).reshape(-1, width) for x in (a, b))
+        if a.shape != b.shape or np.any(a[:, 0] != b[:, 0]) or np.any((a != a)[:, :5] != (b != b)[:, :5]):
             return math.inf, math.inf
-        hopped = [name == "stays" and float(problem["stops"][x[0]]["law"][1]) > 0 for x in a]
-        a, b = (numbers([x[1:] for x in rows]).reshape(-1, width - 1) for rows in (a, b))
-        if np.any((a != a)[:, :4] != (b != b)[:, :4]):
-            return math.inf, math.inf
+        hopped = [name == "stays" and float(problem["stops"][int(j)]["law"][1]) > 0 for j in a[:, 0]]
+        a, b = a[:, 1:], b[:, 1:]
         far = np.where((a == a) & (b == b), abs(a - b), ZERO)
         for i in range(2, width - 1):
             known = a[:, i][a[:, i] == a[:, i]]
