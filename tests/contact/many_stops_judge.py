@@ -1,212 +1,169 @@
-"""Motions between several stops in 40 digits, written apart from the package, and random problems.
+"""Motions between several stops in 60 digits: what happens at the ends of flights, and how answers compare.
 
-    q_k'' + c_k q_k' + omega_k^2 q_k = Gamma_k Z w^2 sin(w t) - sum_j w_jk N_j,     d_j = w_j . q - gap_j
-
-A problem is a dict of numbers, doubles or decimal strings, both taken exactly.  Between two events the modes
-are sums of exponentials: their own, or under a linear contact N = k d + c d' the roots s of 1 + (k + c s) sum
-w_k^2/(s^2 + c_k s + omega_k^2) = 0.  Signals are sampled at 64 points per period of the fastest one.  Each
-maximum near zero between samples is found in 40 digits and decides, and so is the root before it.
+Linear contacts N = max(0, k d + c d') act while d > 0.  Moreau's law acts at all stops under Newton's law
+that are hit or hold: impulses p >= 0 along their rows and d'+ <= -e d'-, in each row one of them an equality.
+After infinitely many hops a stop holds d = 0 by a force N >= 0.  It ends where N falls through zero, or by an
+impact elsewhere.  The last hops take W = 2 w/(a (1 - e)), with the rebound w and the acceleration a.
 """
 
 import math
+from itertools import chain, combinations
 
 import mpmath
 import numpy as np
+from many_stops_flights import ONE, TIE, TINY, ZERO, Exact, Flow, System, first_rise, numbers, solve
 
-mpmath.mp.dps = 40
-Exact = mpmath.mpf
-ZERO, ONE = Exact(0), Exact(1)
-exp, real, exact = (np.frompyfunc(f, 1, 1) for f in (mpmath.exp, lambda x: x.real, Exact))
-CHUNK, DOUBLINGS, NUDGE = 256, 2.0 ** -np.arange(20, 0, -1), Exact("1e-22")
-PLACES = ["tip", "b", "c", ("tip", "b"), ("b", "c")]
+NUDGE, REST, SLOW, MOST = Exact("1e-22"), Exact("1e-18"), Exact("1e-6"), 1500
+"""A change of the motion, the last rebound and an impact not listed, over the fastest; impacts of a run."""
 
 
-def numbers(values: list) -> np.ndarray:
-    return exact(np.array(values, dtype=object))
+class Unordinary(Exception):
+    """Two stops are hit infinitely often in turn, or hold dependent points."""
 
 
-class System:
-    """The numbers of a problem, and what its motion is made of, free or in contact with one stop."""
-
-    def __init__(self, problem: dict) -> None:
-        names = ("omega", "decay_rate", "participation")
-        self.omega, self.decay, gamma = (numbers(problem[name]) for name in names)
-        self.w, self.law, self.known = Exact(problem["w"]), [stop["law"] for stop in problem["stops"]], {}
-        self.force = gamma * Exact(problem["amplitude"]) * self.w**2
-        rows = {name: numbers(row) for name, row in (problem["points"] | {"tip": problem["phi"]}).items()}
-        places = [(stop["side"], stop["at"]) for stop in problem["stops"]]
-        self.rows = [s * (rows[at] if isinstance(at, str) else rows[at[0]] - rows[at[1]]) for s, at in places]
-        self.gaps = [Exact(stop["gap"]) for stop in problem["stops"]]
-
-    def contact(self, stop: int | None) -> tuple:
-        """The row, k and c of a linear contact; without one all are zero."""
-        return (0 * self.omega, 0, 0) if stop is None else (self.rows[stop], *map(Exact, self.law[stop][1:]))
-
-    def solve(self, s: mpmath.mpc, force: np.ndarray, stop: int | None) -> np.ndarray:
-        """x of (s^2 + c s + omega^2) x + (k + c s) w (w . x) = force."""
-        own, (row, k, c) = s * (s + self.decay) + self.omega**2, self.contact(stop)
-        x, y = force / own, (k + c * s) * row / own
-        return x - y * (row @ x) / (1 + row @ y)
-
-    def rate(self, s: mpmath.mpc, stop: int) -> mpmath.mpc:
-        """The rate of a motion in contact near `s`, by Newton's method on the polynomial."""
-        row, k, c = self.contact(stop)
-        for _ in range(20):
-            own, slope = s * (s + self.decay) + self.omega**2, 2 * s + self.decay
-            share, bend = (row**2 / own).sum(), (row**2 * slope / own**2).sum()
-            f = 1 + (k + c * s) * share
-            step = f / (c * share - (k + c * s) * bend + f * (slope / own).sum())
-            s -= step
-            if abs(step) < abs(s) * Exact("1e-25"):
-                return s
-        raise ArithmeticError("a rate of the contact was not found")
-
-    def pieces(self, stop: int | None) -> tuple:
-        """Rates and shapes of the free motions, static displacements, steady response."""
-        if stop not in self.known:
-            n, (row, k, c) = self.omega.size, self.contact(stop)
-            rates = list(-self.decay / 2 + 1j * (self.omega**2 - self.decay**2 / 4) ** Exact(0.5))
-            shapes, static = exact(np.eye(n)), 0 * self.omega
-            if stop is not None:
-                square = np.outer(row, row)
-                lower = [-np.diag(self.omega**2) - k * square, -np.diag(self.decay) - c * square]
-                whole = np.block([[np.zeros((n, n)), np.eye(n)], lower]).astype(float)
-                rates = [self.rate(mpmath.mpc(s), stop) for s in np.linalg.eigvals(whole) if s.imag >= 0]
-                shapes = np.array([self.solve(s, row, None) for s in rates])
-                static = self.solve(Exact(0), k * self.gaps[stop] * row, stop)
-            self.known[stop] = rates, shapes, static, self.solve(1j * self.w, self.force, stop)
-        return self.known[stop]
+def complementary(matrix: np.ndarray, value: np.ndarray) -> np.ndarray:
+    """p >= 0 with value - matrix p <= 0, of which in each row one is zero."""
+    tiny, every = TINY * max(abs(value)), range(len(value))
+    for some in chain.from_iterable(combinations(every, n) for n in range(len(value) + 1)):
+        p, some = 0 * value, list(some)
+        try:
+            p[some] = solve(matrix[np.ix_(some, some)], value[some])
+        except ZeroDivisionError:
+            continue
+        if np.all(p >= 0) and np.all(value - matrix @ p <= tiny):
+            return p
+    raise Unordinary
 
 
-class Flow:
-    """q(s) = Re sum_j vectors_j exp(rates_j s) + drift s, from a state (q, v) at a time on."""
+class Motion:
+    """The motion of a problem, event by event."""
 
-    def __init__(self, system: System, time: Exact, q: np.ndarray, v: np.ndarray, stop: int | None) -> None:
-        rates, shapes, static, response = system.pieces(stop)
-        steady = -1j * mpmath.expj(system.w * time) * response
-        u, du, (row, _, c) = q - static - real(steady), v - real(1j * system.w * steady), system.contact(stop)
-        self.rows, self.gaps, self.drift = system.rows, system.gaps, 0 * u
-        self.rates, self.vectors = np.array([Exact(0), 1j * system.w, *rates]), [static, steady]
-        for s, r in zip(rates, shapes, strict=True):
-            if s == 0:  # a free mass
-                self.drift = self.drift + r * du
-                self.vectors.append(r * u)
+    def __init__(self, problem: dict, system: System | None = None) -> None:
+        self.system, self.time, self.end = system or System(problem), ZERO, Exact(problem["duration"])
+        self.q, self.v = (numbers(problem[name]) for name in ("q", "v"))
+        self.touches, self.stays, self.closed, self.resting = [], [], {}, {}
+        self.pushed, self.fresh, self.last, self.highest, self.log = set(), set(), {}, ZERO, []
+
+    def signals(self, flow: Flow) -> dict:
+        found, system = {}, self.system
+        for j, c in enumerate(system.damping):
+            if j in self.resting:
+                found["release", j] = flow.force(j)
+            elif j not in self.closed:
+                found["touch", j] = flow.distance(j)
+            elif j in self.pushed and c:
+                found["let go", j] = flow.distance(j, -system.first[j], -c)
             else:
-                part = r @ ((system.decay + s) * u + du) + c * (row @ r) * (row @ u)
-                part /= r @ ((system.decay + 2 * s) * r) + c * (row @ r) ** 2
-                self.vectors.append(part * r if s.imag == 0 else 2 * part * r)
-        self.vectors = np.array(self.vectors)
+                found["leave", j] = flow.distance(j, -ONE)
+                if c:
+                    found["push", j] = flow.distance(j, system.first[j], c)
+        return found
 
-    def state(self, s: Exact) -> tuple[np.ndarray, np.ndarray]:
-        grown = exp(self.rates * s)
-        q, v = (real(x @ self.vectors) for x in (grown, grown * self.rates))
-        return q + self.drift * s, v + self.drift
+    def run(self, *, nudge: Exact = ZERO, turn: int = 1, most: int = 10**6) -> dict:
+        """The answer; a `nudge` changes the velocity at the start and at each event, as rounding does."""
+        system = self.system
+        start = self.v + system.force + system.load
+        self.v = self.v + nudge * start / mpmath.norm(start)
+        while sum(x[3] > 1e-3 * self.highest for x in self.touches) < most:
+            if len(self.touches) > MOST:
+                raise Unordinary
+            flow = Flow(system, self.time, self.q, self.v, sorted(self.pushed), sorted(self.resting))
+            found = first_rise(self.signals(flow), self.fresh, self.end - self.time)
+            s = found[0][0] if found else self.end - self.time
+            self.q, self.v = flow.state(s)
+            self.time += s
+            if not found:
+                break
+            nudge *= turn
+            self.events([name for place, name in found if place - s < TIE], nudge)
+        touches = [x for x in self.touches if x[3] >= SLOW * self.highest]
+        return {"touches": touches, "stays": self.stays, "q": list(self.q), "v": list(self.v)}
+
+    def events(self, names: list, nudge: Exact) -> None:
+        """All that happens at this instant."""
+        system, self.fresh = self.system, {j for _, j in names}
+        self.log.append((self.time, names))
+        rows = system.rows[sorted(self.resting)]
+        push = system.rows[sorted(self.fresh)].sum(axis=0)
+        self.v = self.v + nudge * (push - solve(rows @ rows.T, rows @ push) @ rows)
+        speed = system.rows @ self.v
+        hit = sorted(j for what, j in names if what == "touch" and system.newton[j])
+        for what, j in names:
+            if what == "touch" and j not in hit:
+                self.closed[j] = [j, self.time, mpmath.nan, speed[j], mpmath.nan, mpmath.nan]
+                self.touches.append(self.closed[j])
+                self.highest = max(self.highest, speed[j])
+            elif what == "leave":
+                self.closed.pop(j)[2:5:2] = self.time, speed[j]
+            elif what == "release":
+                self.open(j)
+            {"touch": self.pushed.add, "push": self.pushed.add}.get(what, self.pushed.discard)(j)
+        self.pushed -= set(hit)
+        small = self.impact(hit) if hit else []
+        if small or self.resting:
+            self.hold(small)
+
+    def open(self, stop: int) -> None:
+        self.resting.pop(stop)[2] = self.last[stop] = self.time
+        self.fresh.add(stop)
+
+    def impact(self, hit: list) -> list:
+        """Moreau's law at the stops that are hit or hold; returns the stops whose rebound is the last."""
+        system, stops = self.system, sorted([*hit, *self.resting])
+        rows, e = system.rows[stops], system.first[stops]
+        before = (rows @ self.v) * np.array([j in hit for j in stops])
+        p = complementary(rows @ rows.T, (1 + e) * before)
+        self.v = self.v - p @ rows
+        self.highest, small = max(self.highest, *before), []
+        for j, old, new, impulse in zip(stops, before, rows @ self.v, p, strict=True):
+            if j in hit:
+                self.touches.append([j, self.time, self.time, old, new, impulse])
+                self.last[j] = self.time
+                if abs(new) < REST * self.highest:
+                    small.append(j)
+            elif new < -Exact("1e-40") * self.highest:
+                self.open(j)
+        for j in self.closed:
+            if c := system.damping[j]:
+                d = system.rows[j] @ self.q - system.gaps[j]
+                pushes = system.first[j] * d + c * (system.rows[j] @ self.v) > 0
+                (self.pushed.add if pushes else self.pushed.discard)(j)
+        free = [t for j, t in self.last.items() if j not in stops]
+        if small and any((self.time - t) * system.w < 1e-9 for t in free):
+            raise Unordinary
+        return small
+
+    def hold(self, small: list) -> None:
+        """The same law at accelerations, for stops that hold and those whose hops are over."""
+        system, stops = self.system, sorted([*self.resting, *small])
+        stiff, damp, force = system.matrices(sorted(self.pushed))
+        rows, old = system.rows[stops], [stops.index(j) for j in sorted(self.resting)]
+        square = rows @ rows.T
+        v = self.v - solve(square, rows @ self.v) @ rows
+        a = force + system.force * mpmath.sin(system.w * self.time) - stiff @ self.q - damp @ v
+        rate, waits = rows @ a, []
+        holds = complementary(square, rate)
+        if small and old:  # what pulls a hopping point back while the others hold
+            rate = rate - square[:, old] @ complementary(square[np.ix_(old, old)], rate[old])
+        for i, j in enumerate(stops):
+            if holds[i] > 0 and j in small:
+                waits.append(-2 * (rows[i] @ self.v) / (rate[i] * (1 - system.first[j])))
+                self.resting[j] = [j, self.time + waits[-1], mpmath.nan]
+                self.stays.append(self.resting[j])
+            elif holds[i] <= 0 and j in self.resting:
+                self.open(j)
+        if waits and max(waits) - min(waits) > 1e-9 * max(waits):
+            raise Unordinary
+        held = system.rows[sorted(self.resting)]
+        self.v = self.v - solve(held @ held.T, held @ self.v) @ held
 
 
-class Signal:
-    """a d + b d' of a stop along a flow."""
+def follow(problem: dict, **how: float) -> dict:
+    """Touches [stop, start, end, approach, rebound, impulse], stays [stop, start, end], the state at the end.
 
-    def __init__(self, flow: Flow, stop: int, a: Exact = ONE, b: Exact = ZERO) -> None:
-        drift, self.rates = flow.rows[stop] @ flow.drift, flow.rates
-        self.terms, self.drift = (a + b * flow.rates) * (flow.vectors @ flow.rows[stop]), a * drift
-        self.terms[0] += b * drift - a * flow.gaps[stop]
-        self.fast = np.array([self.rates, self.terms, self.terms * self.rates]).astype(complex)
-        sizes = np.abs(self.fast)
-        self.fastest, self.size = float(sizes[0].max()), float(sizes[1].sum())
-
-    def samples(self, s: np.ndarray) -> np.ndarray:
-        """Value and slope in double precision, shape (2, n)."""
-        grown = np.exp(np.multiply.outer(self.fast[0], s))
-        return (self.fast[1:] @ grown).real + float(self.drift) * np.array([s, np.ones_like(s)])
-
-    def exact(self, s: Exact) -> list:
-        """Value, slope and second derivative."""
-        one = self.terms * exp(self.rates * s)
-        value, slope, bend = (x.sum().real for x in (one, one * self.rates, one * self.rates**2))
-        return [value + self.drift * s, slope + self.drift, bend]
-
-    def rise(self, low: Exact, high: Exact, *, peak: bool = False) -> Exact:
-        """Where the value, or for a `peak` minus the slope, rises through zero."""
-        s = (low + high) / 2
-        for _ in range(300):
-            y, rate = (-x for x in self.exact(s)[1:]) if peak else self.exact(s)[:2]
-            low, high = (s, high) if y < 0 else (low, s)
-            new = s - y / rate if rate > 0 else low - 1
-            new = new if low <= new <= high else (low + high) / 2
-            if abs(new - s) * self.fastest < Exact("1e-26") * (1 + self.fastest * abs(s)):
-                return new
-            s = new
-        raise ArithmeticError("a root was not found")
-
-
-def first_rise(signals: dict, at_zero: tuple, end: Exact) -> list:
-    """Sorted (place, name) of signals that first rise through zero in (0, end]; `at_zero` falls from it."""
-    step, start = 2 * math.pi / 64 / next(iter(signals.values())).fastest, 0.0
-    while start < end:
-        s = start + step * np.arange(CHUNK + 1)
-        s = np.concatenate([[0.0], step * DOUBLINGS, s[1:]]) if start == 0 else s
-        found = []
-        for name, signal in signals.items():
-            x, slope = signal.samples(s)
-            if start == 0 and name == at_zero:
-                x[0] = -signal.size
-            tops = (slope[:-1] > 0) & (slope[1:] <= 0) & (np.maximum(x[:-1], x[1:]) > -0.02 * signal.size)
-            for i in np.flatnonzero(tops | (x[1:] > 0)):
-                low, high = Exact(s[i]), Exact(s[i + 1])
-                high = signal.rise(low, high, peak=True) if tops[i] else high
-                if signal.exact(high)[0] > 0:
-                    found.append((signal.rise(low, high), name))
-                    break
-        if found := sorted(one for one in found if one[0] <= end):
-            return found
-        start = float(s[-1])
-    return []
-
-
-def follow(problem: dict, *, nudge: Exact = ZERO, turn: int = 1, most: int = 10**6) -> dict:
-    """Touches [stop, start, end, approach, rebound], NaN if one has not ended, and the state at the end.
-
-    If a second stop is reached while one is touched the run ends, and `at_once` is the time.  A `nudge`
-    changes the velocity at the start and at each event, as rounding does, with turn = -1 in alternation.
+    Without impulse or end these are NaN; impacts below 1e-6 of the fastest are left out.
     """
-    system, time, end = System(problem), Exact(0), Exact(problem["duration"])
-    q, v = (numbers(problem[name]) for name in ("q", "v"))
-    touches, held, pushed, at_zero, stop = [], None, False, (), 0
-    while len(touches) < most or held is not None:
-        v, nudge = v + nudge * system.rows[stop], turn * nudge
-        flow = Flow(system, time, q, v, held if pushed else None)
-        signals = {("touch", j): Signal(flow, j) for j in range(len(system.rows)) if j != held}
-        if held is not None:
-            _, k, c = system.contact(held)
-            if pushed:
-                signals["let go", held] = Signal(flow, held, -k, -c)
-            else:
-                signals |= {
-                    ("push", held): Signal(flow, held, k, c),
-                    ("leave", held): Signal(flow, held, -ONE),
-                }
-        if not (found := first_rise(signals, at_zero, end - time)):
-            q, v = flow.state(end - time)
-            break
-        s, (what, stop) = found[0]
-        q, v = flow.state(s)
-        time, row = time + s, system.rows[stop]
-        speed, law = row @ v, system.law[stop]
-        if what == "touch" and (held is not None or [x for x in found[1:] if x[0] - s < Exact("1e-30")]):
-            return {"touches": touches, "at_once": time, "pushed": pushed or held is None}
-        if what == "touch" and law[0] == "newton":
-            v = v - (1 + Exact(law[1])) * speed / (row @ row) * row
-            touches.append([stop, time, time, speed, row @ v])
-            at_zero = "touch", stop
-        elif what == "touch":
-            touches.append([stop, time, mpmath.nan, speed, mpmath.nan])
-            held, pushed, at_zero = stop, True, () if law[2] else ("let go", stop)
-        elif what == "leave" or (what == "let go" and not law[2]):
-            touches[-1][2::2] = time, speed
-            held, pushed, at_zero = None, False, ("touch", stop)
-        else:
-            pushed, at_zero = what == "push", ("push" if what == "let go" else "let go", stop)
-    return {"touches": touches, "q": list(q), "v": list(v)}
+    return Motion(problem).run(**how)
 
 
 def size(problem: dict, q: list, v: list) -> Exact:
@@ -214,71 +171,39 @@ def size(problem: dict, q: list, v: list) -> Exact:
     return mpmath.norm([*(numbers(problem["omega"]) * numbers(q)), *numbers(v)])
 
 
-def distance(problem: dict, one: dict, other: dict) -> float:
-    """The largest difference of two answers: times by w, speeds over the highest, the end over its size."""
-    if [x[0] for x in one["touches"]] != [x[0] for x in other["touches"]]:
-        return math.inf
-    a, b = (numbers([x[1:] for x in answer["touches"]]) for answer in (one, other))
-    if np.any((a != a) != (b != b)):
-        return math.inf
-    far = np.where(a == a, abs(a - b), ZERO) * ([Exact(problem["w"])] * 2 + [1 / a[:, 2].max()] * 2)
+def distance(problem: dict, one: dict, other: dict) -> tuple[float, float]:
+    """The largest difference of two answers, and that of the dates of rest after infinitely many hops.
+
+    Times by w, speeds and impulses over the highest, the end over its size.  Touches count by their speed:
+    an error of the position changes the time of a slow one, and with it all its numbers, as 1/approach.
+    """
+    w, parts, hops = Exact(problem["w"]), [], [ZERO]
+    for name, width in (("touches", 6), ("stays", 3)):
+        a, b = (sorted(map(list, numbers(answer[name]).reshape(-1, width))) for answer in (one, other))
+        a, b = (np.array(x, dtype=object).reshape(-1, width) for x in (a, b))
+        if a.shape != b.shape or np.any(a[:, 0] != b[:, 0]) or np.any((a != a)[:, :5] != (b != b)[:, :5]):
+            return math.inf, math.inf
+        hopped = [name == "stays" and float(problem["stops"][int(j)]["law"][1]) > 0 for j in a[:, 0]]
+        a, b = a[:, 1:], b[:, 1:]
+        far = np.where((a == a) & (b == b), abs(a - b), ZERO)
+        for i in range(2, width - 1):
+            known = a[:, i][a[:, i] == a[:, i]]
+            far[:, i] /= max([TINY, *abs(known)])
+        far[:, :2] *= w
+        if width > 3 and len(a):
+            far *= a[:, 2:3] / max(a[:, 2])
+        hops += list(far[hopped, 0])
+        far[hopped, 0] = ZERO
+        parts += list(far.ravel())
     end = size(problem, *(numbers(one[x]) - numbers(other[x]) for x in "qv"))
-    return float(max(far.max(), end / size(problem, one["q"], one["v"])))
+    return float(max([*parts, end / size(problem, one["q"], one["v"])])), float(max(hops))
 
 
-def complete(problem: dict) -> dict:
+def complete(problem: dict, system: System | None = None) -> dict:
     """A problem with its answer, and its amplification: by how much changes of the motion grow."""
-    answer = follow(problem)
-    if "at_once" not in answer:
-        nudge = NUDGE * max(size(problem, answer["q"], answer["v"]), *(x[3] for x in answer["touches"]))
-        far = (distance(problem, answer, follow(problem, nudge=nudge, turn=turn)) for turn in (1, -1))
-        answer["amplification"] = max(1.0, max(far) / float(NUDGE))
-    return problem | {"answer": answer}
-
-
-def random_problem(rng: np.random.Generator) -> dict:
-    """One to eight modes between one to four stops, with gaps that the motion without them exceeds."""
-    n = int(rng.integers(1, 9))
-    omega = np.append(1.0, np.sort(rng.uniform(1.3, 40.0, n - 1)))
-    phi, b, c, gamma = rng.uniform(-1.0, 1.0, (4, n)) * omega**-0.5 + np.eye(1, n)
-    problem = {
-        "omega": omega.tolist(),
-        "decay_rate": (2.0 * 10.0 ** rng.uniform(-3.0, -1.3, n) * omega).tolist(),
-        "participation": gamma.tolist(),
-        "phi": phi.tolist(),
-        "points": {"b": b.tolist(), "c": c.tolist()},
-        "w": rng.uniform(0.4, 1.6),
-        "amplitude": rng.uniform(0.2, 1.0),
-        "q": [0.0] * n,
-        "v": (rng.normal(size=n) * omega**-0.5).tolist(),
-        "duration": 200.0,
-        "stops": [],
-    }
-    for i in rng.choice(2 * len(PLACES), rng.integers(1, 5), replace=False):
-        stop = {"gap": 0.0, "at": PLACES[i // 2], "side": int(1 - 2 * (i % 2))}
-        system = System(problem | {"stops": [stop | {"law": []}]})
-        free = Signal(Flow(system, Exact(0), *(numbers(problem[name]) for name in ("q", "v")), None), 0)
-        stop["gap"] = rng.uniform(0.1, 0.5) * float(free.samples(np.arange(0.0, 40.0, 0.02))[0].max())
-        mobility, stop["law"] = float(system.rows[0] @ system.rows[0]), ["newton", rng.uniform(0.3, 0.95)]
-        if rng.random() < 0.4:
-            unit, damping = rng.uniform(5.0, 60.0), rng.choice((0.0, rng.uniform(0.05, 0.6)))
-            stop["law"] = ["linear", unit**2 / mobility, float(damping * unit / mobility)]
-        problem["stops"].append(stop)
-    return problem
-
-
-def judged(rng: np.random.Generator) -> dict:
-    """A random problem with its answer, without slow impacts or chaos."""
-    while True:
-        problem, most = random_problem(rng), int(rng.integers(6, 40))
-        answer = follow(problem, most=most)
-        touches, at_once = answer["touches"], answer.get("at_once")
-        speeds = [x[3] for x in touches] or [ZERO]
-        if min(speeds) <= 1e-3 * max(speeds):
-            continue
-        if at_once and answer["pushed"] and len(touches) < 6:
-            return complete(problem | {"duration": float(at_once) + 1.0})
-        if not at_once and len(touches) > 5 and (gap := touches[-1][1] - touches[-2][2]) > 0.01:
-            problem = complete(problem | {"duration": float(touches[-1][1] - gap / 2)})
-            if problem["answer"]["amplification"] < 4e4:
-                return problem
+    system = system or System(problem)
+    answer = Motion(problem, system).run()
+    nudge = NUDGE * max(size(problem, answer["q"], answer["v"]), *(x[3] for x in answer["touches"]), ZERO)
+    other = (Motion(problem, system).run(nudge=nudge, turn=turn) for turn in (1, -1))
+    far = max(max(distance(problem, answer, one)) for one in other)
+    return problem | {"answer": answer | {"amplification": max(1.0, far / float(NUDGE))}}

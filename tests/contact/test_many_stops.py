@@ -8,13 +8,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from many_stops_judge import Exact, System, distance, follow, judged, random_problem
+from make_many_stops import judged, random_problem
+from many_stops_flights import Exact, System
+from many_stops_judge import SLOW, distance, follow
 from oscillators import modes_on_stop, newton, slow
 from tip_judge import PLANTED, Real, Signal, judge, with_gap
 
 from beam import ModalModel, Point
 from contact import (
-    ContactError,
     HarmonicDrive,
     ImpactKind,
     ImpactOscillator,
@@ -30,7 +31,7 @@ from contact.flight.modal_flow import steady_motion, tip_rounding
 
 PROBLEMS = {one["name"]: one for one in json.loads(Path(__file__).with_name("many_stops.json").read_text())}
 FRESH = int(os.environ.get("MANY_STOPS_FRESH", "40"))
-"""Random problems of the slow test; 300 take some seven minutes."""
+"""Random problems of the slow test; drawing one takes some two seconds."""
 
 
 def oscillator_of(problem: dict) -> ImpactOscillator:
@@ -46,30 +47,36 @@ def oscillator_of(problem: dict) -> ImpactOscillator:
         model=ModalModel(**rows, points=points, dimensionless=True),
         stops=tuple(stops),
         drive=HarmonicDrive(frequency=problem["w"] / (2.0 * np.pi), amplitude=problem["amplitude"]),
+        load=problem.get("load"),
     )
 
 
-def run(problem: dict, duration: float | None = None) -> Trajectory:
+def run(problem: dict) -> Trajectory:
     q, v = (np.array(problem[name], dtype=float) for name in ("q", "v"))
-    end = float(problem["duration"]) if duration is None else duration
-    return simulate(oscillator_of(problem), State(displacement=q, velocity=v), duration=end)
+    start = State(displacement=q, velocity=v)
+    return simulate(oscillator_of(problem), start, duration=float(problem["duration"]))
 
 
 def check(problem: dict) -> None:
-    """Every touch and the end to 1e3 roundings of the start, or the refusal at the second touch."""
-    answer = problem["answer"]
-    if "at_once" in answer:
-        time = float(answer["at_once"])
-        run(problem, time * (1.0 - 1e-6))
-        with pytest.raises(ContactError, match="touched at once"):
-            run(problem, time * (1.0 + 1e-6))
-        return
-    end = run(problem)
+    """Every touch and stay and the end to 1e3 roundings of the start, dates after infinite hops to 1e-10.
+
+    Impacts below 1e-6 of the fastest are left out.  Impulses found together are marked.
+    """
+    answer, end = problem["answer"], run(problem)
     i = end.impacts
-    assert np.all(i.kind == ImpactKind.IMPACT)
-    touches = zip(i.stop.tolist(), i.start, i.end, i.approach, i.rebound, strict=True)
-    found = {"touches": list(touches), "q": end.end.displacement, "v": end.end.velocity}
-    assert distance(problem, answer, found) <= 1e3 * EPS * answer["amplification"]
+    assert not np.any(i.kind == ImpactKind.GRAZE)
+    stays, hits = (i.kind == ImpactKind.STAY), (i.kind != ImpactKind.STAY)
+    hits &= i.approach >= float(SLOW) * i.approach[hits].max(initial=0.0)
+    columns = [i.stop, i.start, i.end, i.approach, i.rebound, i.impulse]
+    found = {
+        "touches": list(zip(*(x[hits].tolist() for x in columns), strict=True)),
+        "stays": list(zip(*(x[stays].tolist() for x in columns[:3]), strict=True)),
+        "q": end.end.displacement,
+        "v": end.end.velocity,
+    }
+    far, hops = distance(problem, answer, found)
+    assert far <= 1e3 * EPS * answer["amplification"]
+    assert hops <= 1e-10
 
 
 @pytest.mark.filterwarnings("ignore:frequency of the drive:beam.SuspiciousValue")
@@ -81,27 +88,40 @@ def test_stored_motions(name):
 @pytest.mark.parametrize("name", [name for name, one in PROBLEMS.items() if "known" in one])
 def test_judge_agrees_with_another_program(name):
     """To 1e-20: the judge computes anew what the other program has computed in 40 digits."""
-    answer, known = follow(PROBLEMS[name]), PROBLEMS[name]["known"]
-    pairs = [([answer["at_once"]], [known["at_once"]])] if "at_once" in known else []
+    answer, known, pairs = follow(PROBLEMS[name]), PROBLEMS[name]["known"], []
     for stop, time, speed in known.get("touches", []):
-        own = min((x for x in answer["touches"] if x[0] == stop), key=lambda x: abs(x[1] - Exact(time)))
-        pairs.append(([own[1], own[3]], [time, speed]))
+        ends = [x[i::2][:2] for x in answer["touches"] for i in (1, 2) if x[0] == stop and x[i] == x[i]]
+        pairs.append((min(ends, key=lambda x: abs(x[0] - Exact(time))), [time, speed]))
     if "end" in known:
         pairs.append((answer["q"] + answer["v"], [*known["end"][0], *known["end"][1]]))
     for ours, theirs in pairs:
         assert max(abs(a - Exact(b)) for a, b in zip(ours, theirs, strict=True)) < Exact("1e-20")
 
 
+def test_judge_knows_the_bouncing_mass():
+    """A mass under the pull g: each hop takes e times as long as the last, until the stop holds it."""
+    e, g, gap = Exact("0.5"), Exact("9.8125"), Exact("0.25")
+    numbers = {name: [0.0] for name in ("omega", "decay_rate", "participation", "q", "v")}
+    stop = {"gap": gap, "at": "tip", "side": 1, "law": ["newton", e]}
+    numbers |= {"phi": [1.0], "load": [g], "points": {}, "w": 1.0, "amplitude": 0.0, "stops": [stop]}
+    answer, first = follow(numbers | {"duration": 2.0}), (2 * gap / g) ** 0.5
+    for n, touch in enumerate(answer["touches"]):
+        time, speed = first * (1 + 2 * e * (1 - e**n) / (1 - e)), g * first * e**n
+        assert abs(touch[1] - time) < Exact("1e-30") > abs(touch[3] - speed)
+    [(_, start, _)] = answer["stays"]
+    assert len(answer["touches"]) == 20 and abs(start - 3 * first) < Exact("1e-30")
+    assert (answer["q"], answer["v"]) == ([gap], [0])
+
+
 @pytest.mark.slow
 def test_fresh_motions():
-    """Of the first 300 all but number 296 pass, which is 1.01e3 roundings off, 2.9e-13 of its size."""
     for seed in range(FRESH):
         check(judged(np.random.default_rng([53, seed])))
 
 
 def views(rng: np.random.Generator) -> tuple:
     """A flight before several stops: oscillator, start, length, and how each stop sees it."""
-    problem = random_problem(rng)
+    problem = random_problem(rng) | {"load": None}
     oscillator, rows = oscillator_of(problem), System(problem).rows
     time, length = rng.uniform(0.0, 0.5) * oscillator.period, min(4.0, 0.4 * oscillator.period)
     start = State(displacement=problem["q"], velocity=problem["v"], time=time)
@@ -161,7 +181,7 @@ def test_planted_grazes(count):
 def test_a_graze_of_one_stop_goes_before_or_after_the_hit_of_another():
     """The gap of the first stop is its highest peak, rounded to a double."""
     rng, told = np.random.default_rng(55), Counter()
-    while told.total() < 200:
+    while told.total() < 400:
         oscillator, start, length, stops, seen = views(rng)
         if len(seen) < 2:
             continue
@@ -169,7 +189,8 @@ def test_a_graze_of_one_stop_goes_before_or_after_the_hit_of_another():
         at, gap = float(tops[np.argmax(signal(tops))]), float(top / (1 + Real(0.1)))
         hit = float(judge(other, gap, length, peaks=peaks).time)
         blurred = tip_rounding(with_gap(motion, float(highest)), *flight) > GRAZE_TOLERANCE * float(highest)
-        if blurred or abs(hit - at) < 1e-3 * length:
+        higher = signal(np.array([length])).max() > highest  # still rising at the end
+        if blurred or higher or abs(hit - at) < 1e-3 * length:
             continue
         both = (
             replace(stops[0], gap=float(highest), law=newton(0.5)),
