@@ -56,10 +56,9 @@ class ImpactOscillator:
     load : ndarray, shape (n_modes,), optional
         Constant modal load [N kg^-0.5].
     simultaneous : {"moreau", "sequential"}
-        What happens under Newton's law if several stops are met at one instant, or one while a point rests on
-        another: Moreau's law for all of them, or one stop after the other until all have separated, always
-        that with the largest velocity towards it (``contact.touch.impulses``).  The first suits one body
-        that meets rigid stops, the second bodies in a row, see ``docs/several_stops.md``.
+        The law if several stops of Newton's law are met at one instant, or one while a point rests on
+        another: Moreau's for all of them, or one stop after the other, that with the largest approach
+        velocity first (``contact.touch.impulses``).  ``docs/several_stops.md`` says which suits what.
 
     Simulation takes any number of stops.  What holds for a single stop at the tip, such as collisions, maps
     and periodic orbits, refuses others in one sentence.

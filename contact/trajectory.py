@@ -97,13 +97,12 @@ class State:
             require(array.size > 0, where, f"is []; it must be {words}")
             shape = array.shape
         if type(self.regime) is not Regime:
-            one: object = self.regime
-            several = one if isinstance(one, tuple | list | np.ndarray) else None
-            given = [one] if several is None else list(several)
+            several = isinstance(self.regime, tuple)
+            given = self.regime if isinstance(self.regime, tuple) else (self.regime,)
             if not all(is_number(each) and each in (0, 1, 2, 3, 4) for each in given):
                 raise InvalidValue(f"regime of the state is {shown(self.regime)}; it must be 0, 1, 2, 3 or 4")
             regimes = tuple(Regime(each) for each in given)
-            object.__setattr__(self, "regime", regimes[0] if several is None else regimes)
+            object.__setattr__(self, "regime", regimes if several else regimes[0])
         for name, unit in (("time", "s"), ("wait", "s"), ("rebound", "m/s")):
             value = getattr(self, name)
             if type(value) is not float or not math.isfinite(value):  # the usual case without a call
@@ -198,6 +197,7 @@ class Trajectory:
             require(same, "oscillator", f"has other numbers than the one that moved in {shown(str(path))}")
             end = {name: file[f"end_{name}"] for name in _STATE}
             numbers = {name: value if value.ndim else value.item() for name, value in end.items()}
+            numbers["regime"] = tuple(end["regime"].tolist()) if end["regime"].ndim else numbers["regime"]
             columns = {name: file[f"impacts_{name}"] for name in _COLUMNS}
             arrays = {name: file[name] if file[name].ndim else file[name].item() for name in _ARRAYS}
         impacts = Impacts(oscillator=oscillator, **columns)

@@ -64,12 +64,12 @@ def lone_impact(motion, seen, runs, u, v, recorder):
 
 
 @kernel
-def wait_for_ties(motion, run, stops, u, v, sets):
+def meet_ties(motion, run, stops, u, v, sets):
     """Go on to the last of the instants at which stops are met, if rounding leaves their order open.
 
     A stop that is met slowly is met within its rounding bound over its velocity.
     """
-    wait = 0.0
+    later = 0.0
     for j in range(stops.size):
         slow = seen_from(motion, j)
         if stops[j].regime == OUTSIDE and sets.event[j] == CHANGES:
@@ -82,13 +82,13 @@ def wait_for_ties(motion, run, stops, u, v, sets):
                     and faster > rate > 0.0
                     and late * rate <= tip_rounding(slow, u, v)
                 ):
-                    wait = max(wait, late)
-    if wait > 0.0:
+                    later = max(later, late)
+    if later > 0.0:
         for k in range(u.size):
             pull = mode_acceleration(motion, k, u[k], v[k])
-            u[k] += wait * v[k]
-            v[k] += wait * pull
-        run.clock += wait
+            u[k] += later * v[k]
+            v[k] += later * pull
+        run.clock += later
 
 
 @kernel
@@ -231,7 +231,7 @@ def instant(motion, runs, u, v, sets, recorder):
     run, stops, before = runs[0], runs[1:], np.empty(runs.size - 1, np.int64)
     for j in range(stops.size):
         before[j] = stops[j].regime
-    wait_for_ties(motion, run, stops, u, v, sets)
+    meet_ties(motion, run, stops, u, v, sets)
     status = strike_together(motion, runs, u, v, sets, recorder)
     if status == GOING:
         status = change_contacts(motion, runs, u, v, sets, recorder)

@@ -159,22 +159,6 @@ def hopping(motion, clock, u, v, rebound):
 
 
 @kernel
-def strike(motion, run, u, v, approach):
-    """The impact; in the regime SUSTAINED the hops that follow it are a stay."""
-    (e, _slope), rounding = restitution_at(motion, approach), tip_rounding(motion, u, v)
-    newton_impact(motion, v, approach, e)
-    turn = 1.0 + e  # rounded, so that the loss belongs to the rebound that follows
-    impulse = turn * approach / motion.inverse_mass
-    loss = 0.5 * (2.0 - turn) * impulse * approach
-    if hops_end(motion, run, u, v, e * approach, rounding):
-        whole, sooner = hopping(motion, run.clock, u, v, e * approach)
-        run.memory0 = whole * (1.0 - sooner) if whole <= motion.period and abs(sooner) < STEADY_PULL else 0.0
-        return SUSTAINED, -e * approach, loss, impulse
-    run.contact_order = 1 if e * approach > 0.0 else 2
-    return OUTSIDE, -e * approach, loss, impulse
-
-
-@kernel
 def acceleration_rounding(motion, u, v):
     """Bound of the rounding error of the tip acceleration at (u, v) [m/s^2]."""
     total, modes = (abs(motion.tip_sine) + abs(motion.tip_cosine)) * motion.drive**2, motion.modes
@@ -182,6 +166,39 @@ def acceleration_rounding(motion, u, v):
         pull = modes[SQUARE, k] * abs(u[k]) + modes[DECAY, k] * abs(v[k]) + abs(modes[LOAD, k])
         total += abs(modes[WEIGHT, k]) * pull
     return 4.0 * EPS * total
+
+
+@kernel
+def leaving_order(motion, clock, u, v):
+    """The order of the derivative of the height, 2 or 3, by which a tip at rest on the wall leaves; 0 if it
+    stays."""
+    pull, rounding = tip_state(motion, clock, u, v)[2], acceleration_rounding(motion, u, v)
+    if abs(pull) > rounding:
+        return 2 if pull < 0.0 else 0
+    jerk, modes = -(motion.drive**2) * tip_steady(motion, clock)[1], motion.modes
+    for k in range(u.size):
+        own = mode_acceleration(motion, k, u[k], v[k])
+        jerk -= modes[WEIGHT, k] * (modes[DECAY, k] * own + modes[SQUARE, k] * v[k])
+    return 3 if jerk < -motion.fastest * rounding else 0
+
+
+@kernel
+def strike(motion, run, u, v, approach):
+    """The impact; in the regime SUSTAINED the hops that follow it are a stay."""
+    (e, _slope), rounding = restitution_at(motion, approach), tip_rounding(motion, u, v)
+    newton_impact(motion, v, approach, e)
+    turn = 1.0 + e  # rounded, so that the loss belongs to the rebound that follows
+    impulse = turn * approach / motion.inverse_mass
+    loss = 0.5 * (2.0 - turn) * impulse * approach
+    if e * approach == 0.0:
+        run.contact_order, run.memory0 = leaving_order(motion, run.clock, u, v), 0.0
+        return OUTSIDE if run.contact_order > 0 else SUSTAINED, 0.0, loss, impulse
+    if hops_end(motion, run, u, v, e * approach, rounding):
+        whole, sooner = hopping(motion, run.clock, u, v, e * approach)
+        run.memory0 = whole * (1.0 - sooner) if whole <= motion.period and abs(sooner) < STEADY_PULL else 0.0
+        return SUSTAINED, -e * approach, loss, impulse
+    run.contact_order = 1
+    return OUTSIDE, -e * approach, loss, impulse
 
 
 @kernel

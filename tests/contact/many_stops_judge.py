@@ -174,8 +174,7 @@ def size(problem: dict, q: list, v: list) -> Exact:
 def distance(problem: dict, one: dict, other: dict) -> tuple[float, float]:
     """The largest difference of two answers, and that of the dates of rest after infinitely many hops.
 
-    Times by w, speeds and impulses over the highest, the end over its size.  Touches count by their speed:
-    an error of the position changes the time of a slow one, and with it all its numbers, as 1/approach.
+    Times by w, speeds and impulses over the highest, the end over its size.
     """
     w, parts, hops = Exact(problem["w"]), [], [ZERO]
     for name, width in (("touches", 6), ("stays", 3)):
@@ -190,8 +189,6 @@ def distance(problem: dict, one: dict, other: dict) -> tuple[float, float]:
             known = a[:, i][a[:, i] == a[:, i]]
             far[:, i] /= max([TINY, *abs(known)])
         far[:, :2] *= w
-        if width > 3 and len(a):
-            far *= a[:, 2:3] / max(a[:, 2])
         hops += list(far[hopped, 0])
         far[hopped, 0] = ZERO
         parts += list(far.ravel())

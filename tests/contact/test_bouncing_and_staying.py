@@ -1,6 +1,7 @@
 """Impacts that accumulate, and stays on the wall: closed forms, constrained motion, statics."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,7 +9,7 @@ from oscillators import OMEGA, PHI, heights, modes_on_stop, newton, spring
 from whole_motions import FREE, HELD, IMPACT, STAY, accelerations, falling_body, integrate, pressed
 
 from beam import ModalModel
-from contact import Chatter, ImpactOscillator, State, Stop, simulate
+from contact import Chatter, HarmonicDrive, ImpactOscillator, State, Stop, simulate
 
 
 @pytest.mark.parametrize("e", [0.5, 0.7, 0.9, 0.99])
@@ -192,3 +193,22 @@ def test_a_mass_thrown_at_a_ceiling_comes_to_rest_on_the_floor():
     assert run.impacts.kind[-1] == STAY and (run.end.regime, run.end.stop) == (HELD, 0)
     stays = simulate(box, run.end, duration=0.5)
     assert stays.impacts.kind.tolist() == [STAY] and stays.end.displacement[0] == 0.0
+
+
+@pytest.mark.parametrize("beside", [0, 1])
+@pytest.mark.parametrize("turns, stays", [(0.5, False), (1.0, True), (0.0, True)])
+def test_plastic_touch_without_acceleration(turns, stays, beside):
+    """A free mass under A sin w t meets the wall where this vanishes: it leaves with -A w t^3/6 where it
+    falls, and stays where it rises, or where there is no drive at all.  So it does beside another stop."""
+    w, v, law = 2.0 * math.pi, 2.0, newton(0.0)
+    drive = HarmonicDrive(frequency=1.0, amplitude=0.1) if turns else None
+    start = State(displacement=[1.0 - v * turns - 0.1 * w * turns], velocity=[v])
+    far = Stop(gap=9.0, law=law, side=-1)
+    one = modes_on_stop(0.0, participation=1.0, gap=1.0, law=law)
+    model = replace(one.model, dimensionless=True)
+    oscillator = ImpactOscillator(model=model, stops=(one.stop, far)[: 1 + beside], drive=drive)
+    run = simulate(oscillator, start, duration=1.3)
+    assert list(run.impacts.kind) == [IMPACT] + [STAY] * stays
+    late = 1.3 - turns
+    way = 0.0 if stays else 0.1 * (math.sin(w * late) - w * late)
+    assert run.end.displacement[0] - 1.0 == pytest.approx(way, abs=1e-13)

@@ -1,4 +1,4 @@
-"""While one stop is touched the others are watched: a second touch is refused, a near miss is not."""
+"""While one stop is touched the others are watched: a second touch is found, or refused beside some laws."""
 
 from dataclasses import replace
 
@@ -28,6 +28,7 @@ LAWS = {
     "Tsuji": PowerContact(stiffness=5e6, exponent=1.5, damping=200.0),
     "rest": newton(0.0),
 }
+FOLLOWED = ("linear", "damped", "rest")
 ROW = np.array([7.0, -8.0, 9.0, -6.0])  # of the other point
 FAR = 1.0
 """A gap that is never reached [m]."""
@@ -68,8 +69,14 @@ def test_the_height_of_the_other_point_decides(name, side):
         start, times, height = in_a_touch(LAWS[name], side, rng)
         top, length = int(np.argmax(height)), times[-1] - start.time
         size = np.ptp(height)
-        with pytest.raises(TouchedAtOnce, match="touched at once") as caught:
-            simulate(pair(LAWS[name], height[top] - 1e-5 * size, side), start, duration=length)
-        assert caught.value.time == pytest.approx(times[top], abs=0.02 * (times[-1] - times[0]))
+        met = pair(LAWS[name], height[top] - 1e-5 * size, side)
+        if name in FOLLOWED:
+            i = simulate(met, start, duration=length).impacts
+            time = i.start[i.stop == 1][0]
+        else:
+            with pytest.raises(TouchedAtOnce, match="touched at once") as caught:
+                simulate(met, start, duration=length)
+            time = caught.value.time
+        assert time == pytest.approx(times[top], abs=0.02 * (times[-1] - times[0]))
         missed = simulate(pair(LAWS[name], height[top] + 1e-5 * size, side), start, duration=length)
         assert np.all(missed.impacts.stop == 0)
