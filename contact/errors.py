@@ -43,9 +43,9 @@ class UnresolvedCrossing(ContactError):
 
 
 class TouchedAtOnce(ContactError):
-    """Two stops are touched at once: a second one is reached while the first is, or at the same instant."""
+    """Two stops are touched at once, and the law of one is followed alone; or more than eight act."""
 
-    reason = "two stops are touched at once, which is not followed,"
+    reason = "two stops are touched at once, which is not followed under their laws,"
 
 
 class Chatter(ContactError):

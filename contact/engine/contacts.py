@@ -1,7 +1,8 @@
 """Contacts of the exact motion: their steps, the samples in them, and a second touch.
 
 A contact is followed by the steps of its law (``contact.touch``) until the stop lets go.  With several stops
-each step gives the heights over the others as power series, and a touch of one of them ends the run.
+this serves laws that are followed alone.  Each step gives the heights over the other stops as power series,
+and a touch of one of them ends the run.
 """
 
 from collections.abc import Callable

@@ -5,6 +5,8 @@
 `series`, `time_series`                  power series of a contact: what force laws share; in time
 `exchange`                               work, impulse and largest force of a step
 `tangent_series`                         tangents through a touch
+`impulses`, `sets`, `rests`              several stops: impulses at one instant; contacts followed together;
+                                         which points stay at rest
 
 How to add a law, say N = k d^3
     1. Its file here, ``cubic.py``, with two parts.  The first is a frozen dataclass of its parameters, a
@@ -43,6 +45,10 @@ What a file offers.  `motion` is the oscillator, `run` the state of the motion
                                               law's variable, from its `weight` of the modes and its `own`
                                               numbers as in a stack (``contact.flight.motion``); 0 if no other
                                               stop can be reached
+    joins(motion) -> bool                     whether contacts of this law are followed together with others
+                                              (``contact.touch.sets``), with the next function and number0 as
+                                              dN/dd at d = 0; not if it is left out
+    coefficient(motion, n, depth) -> N        order n of the series of N in time, from that of d up to n + 1
     leave(motion, run, u, v) -> velocity      sets run.contact_order for the flight after the release; the
                                               tip velocity there [m/s]
     force(motion, d, d') -> N                 for the methods with a time step, at d >= 0

@@ -12,6 +12,8 @@ rows of W are independent, or else only their sums.  A stop that is met can get 
 In a sequence one stop after the other acts by its own restitution, always that with the largest velocity
 towards it, and of equals the first, until none is met any more.  Bodies in a row pass on a shock in this way.
 
+A restitution that depends on the speed has its value at the velocity at which the stop is met.
+
 The same complementarity decides over accelerations which points stay at rest on their stops.
 """
 
