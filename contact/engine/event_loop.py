@@ -29,8 +29,8 @@ from contact.engine.contacts import (
     follow_contact,
 )
 from contact.engine.recorder import sample_due, sample_flight, strobe
-from contact.engine.sets import follow_together
-from contact.engine.together import instant, lone_impact
+from contact.engine.sets import follow_several
+from contact.engine.together import instant, meet_several
 from contact.flight.crossing import CROSSES, FREE, UNRESOLVED, searched_flight
 from contact.flight.modal_flow import (
     LOOK,
@@ -47,7 +47,6 @@ from contact.machine.compiled import borrowed, held, kernel, part
 from contact.touch import time_series
 from contact.touch.passage import is_full, meet
 from contact.touch.series import Series, new_series
-from contact.touch.sets import CHANGES, Sets, new_sets
 from contact.trajectory import OUTSIDE
 
 MOST_IMPACTS = 100_000
@@ -65,7 +64,6 @@ class Workspace(NamedTuple):
     v: np.ndarray
     stops: np.ndarray  # the table of the motion, with all stops
     height: np.ndarray  # series of the height over another stop in a contact step, shape (order + 1,)
-    sets: Sets  # workspace of contacts at several stops
 
 
 @part
@@ -85,7 +83,6 @@ def new_workspace(motion):
         np.empty(motion.size),
         motion.modes,
         np.empty(order + 1),
-        new_sets(motion, stops_of(motion)),
     )
 
 
@@ -103,17 +100,21 @@ def earliest_touch(motion, flight, base, duration, runs):
 
 
 @part
-def follow_flights(motion, u, v, runs, last, clock_end, space, recorder, samples):
-    """Follow flights from strobe to strobe, to the next touch or the end of the run; returns the status."""
+def follow_flights(motion, u, v, runs, run_end, space, recorder, samples, sets):
+    """Follow flights from strobe to strobe, to the next touch or the end of the run; returns the status.
+
+    `run_end` is the number of the period of the end, and its clock.
+    """
+    last, clock_end = run_end
     run, flight, whole, marks = runs[0], space.flight, space.whole, recorder.marks[0]
-    strobes, counts, status, several = recorder.strobes, recorder.counts, GOING, stops_of(motion) > 1
+    strobes, counts, status = recorder.strobes, recorder.counts, GOING
     while status == GOING:
         base, at_last = run.clock, run.period == last
         end = clock_end if at_last else motion.period
         if base < end:
             load_state(flight, u, v)
             count, order = 0, run.contact_order
-            if several:
+            if sets is not None:
                 outcome, s, run.stop = earliest_touch(motion, flight, base, end - base, runs)
             elif samples is None:
                 outcome, s = searched_flight(motion, flight, base, end - base, order)
@@ -144,11 +145,12 @@ def follow_flights(motion, u, v, runs, last, clock_end, space, recorder, samples
 
 
 @kernel
-def advance(motion, u, v, runs, last, clock_end, recorder, samples):
+def advance(motion, u, v, runs, last, clock_end, recorder, samples, sets=None):
     """Carry the deviations (u, v), shape (n_modes,) each, to the time `clock_end` [s] after strobe `last`.
 
     They and `runs`, an array of ``contact.touch.passage.STATE``, are overwritten: the run, and behind it the
-    state of each of several stops.  An order above zero in the run says that these are to be settled.  With
+    state of each of several stops.  These need `sets`, ``contact.touch.sets.Sets``; an order above zero in
+    the run says that they are to be settled.  With
     `samples`, ``contact.flight.sampled_crossing.Samples``, crossings are looked for at samples, with None
     they are proved.  Returns the status: DONE, LOG_FULL (call again with a longer log), or one of the
     failures.
@@ -156,12 +158,12 @@ def advance(motion, u, v, runs, last, clock_end, recorder, samples):
     run, workspace = runs[0], new_workspace(motion)
     motion, u, v, recorder = borrowed(motion), borrowed(u), borrowed(v), borrowed(recorder)
     space = borrowed(workspace)
-    status, several, seen, sets = GOING, stops_of(motion) > 1, motion, space.sets
-    if several and run.contact_order > 0:
-        run.contact_order, sets.event[:] = 0, 0
-        status = instant(motion, runs, u, v, sets, recorder)
+    status = GOING
+    if sets is not None:
+        if run.contact_order > 0:
+            run.contact_order, sets.event[:] = 0, 0
+            status = instant(motion, runs, u, v, sets, recorder)
     while status < DONE:
-        seen = seen_from(motion, run.stop) if several else seen
         if is_full(recorder):
             status = LOG_FULL
         elif recorder.marks[0].impacts > MOST_IMPACTS:
@@ -169,23 +171,15 @@ def advance(motion, u, v, runs, last, clock_end, recorder, samples):
         elif run.steps > MOST_STEPS:
             status = FAILED_STEPS
         elif run.regime == OUTSIDE:
-            status = follow_flights(motion, u, v, runs, last, clock_end, space, recorder, samples)
-        elif several and touch.joins(seen):
-            status = follow_together(motion, u, v, runs, last, clock_end, space, recorder)
+            status = follow_flights(motion, u, v, runs, (last, clock_end), space, recorder, samples, sets)
+        elif sets is None:
+            status = follow_contact(motion, u, v, run, last, clock_end, space, recorder)
         else:
-            status = follow_contact(seen, u, v, run, last, clock_end, space, recorder)
-            if several:
-                runs[1 + run.stop].regime, runs[1 + run.stop].contact_order = run.regime, run.contact_order
-                run.contact_order = 0
-        if several and status == CROSSED:
-            seen = seen_from(motion, run.stop)
-            if not lone_impact(motion, seen, runs, u, v, recorder):
-                sets.event[:] = 0
-                sets.event[run.stop] = CHANGES
-                status = instant(motion, runs, u, v, sets, recorder)
-        elif status == CROSSED or status == GRAZED:
-            meet(seen_from(motion, run.stop) if several else seen, run, u, v, status == CROSSED, recorder)
-            if several:
-                runs[1 + run.stop].contact_order, run.contact_order = run.contact_order, 0
+            status = follow_several(motion, u, v, runs, last, clock_end, space, recorder, sets)
+        if status == CROSSED or status == GRAZED:
+            if sets is None:
+                meet(motion, run, u, v, status == CROSSED, recorder)
+            else:
+                status = meet_several(motion, runs, u, v, status == CROSSED, recorder, sets)
     held(workspace)
     return status

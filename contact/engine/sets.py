@@ -4,9 +4,18 @@ Each step of the closed contacts (``contact.touch.sets``) ends at the next touch
 ``contact.engine.together`` says what happens there.
 """
 
-from contact.engine.contacts import DONE, FAILED_SERIES, FAILED_STEPS, MOST_STEPS, rest_of_hops
+from contact import touch
+from contact.engine.contacts import (
+    DONE,
+    FAILED_SERIES,
+    FAILED_STEPS,
+    MOST_STEPS,
+    follow_contact,
+    rest_of_hops,
+)
 from contact.engine.recorder import put_sample, sample_due, strobe
 from contact.engine.together import instant
+from contact.flight.motion import seen_from
 from contact.machine.compiled import kernel, part
 from contact.touch import time_series
 from contact.touch.exchange import UNIFORM, exchange_of
@@ -17,9 +26,8 @@ from contact.trajectory import CONTACT, OUTSIDE, SUSTAINED
 
 
 @kernel
-def exchange_together(motion, run, stops, s, until, series, space, recorder):
+def exchange_together(motion, run, stops, s, until, series, sets, space, recorder):
     """Write what the points give to the stops in a step up to `s`, at the clock `until` [s]."""
-    sets = space.sets
     rates = series.scalars[time_series.RATE]
     for j in range(stops.size):
         if stops[j].regime == CONTACT or stops[j].regime == SUSTAINED:
@@ -35,9 +43,9 @@ def exchange_together(motion, run, stops, s, until, series, space, recorder):
 
 
 @part
-def follow_together(motion, u, v, runs, last, clock_end, space, recorder):
+def follow_together(motion, u, v, runs, last, clock_end, space, recorder, sets):
     """Follow closed contacts to the next instant or the end of the run; returns the status."""
-    run, stops, sets, whole = runs[0], runs[1:], space.sets, space.series
+    run, stops, whole = runs[0], runs[1:], space.series
     whole = fitted(whole, time_series.ORDER, motion.modes.shape[1])
     series = Series(sets.rows, whole.sums, whole.scalars, whole.scaled, whole.places)
     while True:
@@ -58,7 +66,7 @@ def follow_together(motion, u, v, runs, last, clock_end, space, recorder):
                 hold(motion, run.clock + time, stops, space.u, space.v, sets)
                 put_sample(recorder, space.u, space.v)
             if recorder.log.size > 0:
-                exchange_together(motion, run, stops, s, until, series, space, recorder)
+                exchange_together(motion, run, stops, s, until, series, sets, space, recorder)
             time_series.state(motion, run, s, series, u, v)
             run.clock = until
             hold(motion, run.clock, stops, u, v, sets)
@@ -75,3 +83,15 @@ def follow_together(motion, u, v, runs, last, clock_end, space, recorder):
         if at_last:
             return DONE
         strobe(run, recorder.marks[0], recorder.strobes, recorder.counts, u, v)
+
+
+@part
+def follow_several(motion, u, v, runs, last, clock_end, space, recorder, sets):
+    """Follow closed contacts, or one under a law that is followed alone; returns the status."""
+    seen = seen_from(motion, runs[0].stop)
+    if touch.joins(seen):
+        return follow_together(motion, u, v, runs, last, clock_end, space, recorder, sets)
+    run, own = runs[0], runs[1 + runs[0].stop]
+    status = follow_contact(seen, u, v, run, last, clock_end, space, recorder)
+    own.regime, own.contact_order, run.contact_order = run.regime, run.contact_order, 0
+    return status

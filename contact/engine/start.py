@@ -17,6 +17,7 @@ from contact.flight.sampled_crossing import Samples
 from contact.oscillator import ImpactOscillator
 from contact.touch import TOUCHES, force, strike
 from contact.touch.passage import STATE, open_touch
+from contact.touch.sets import new_sets
 from contact.trajectory import INSIDE, OUTSIDE, SUSTAINED, WAITING, ImpactKind, Regime, Run, State, Trajectory
 
 HELD_WITHIN = 1e3  # largest distance from the gap of a tip that rests on the wall, in rounding bounds
@@ -181,8 +182,10 @@ def exact_trajectory(oscillator: ImpactOscillator, run: Run, samples: Samples | 
             kind, approach = (ImpactKind.STAY, 0.0) if stays else (ImpactKind.UNDER_WAY, np.nan)
             open_touch(recorder, each["stop"], run.first, run.clock, approach, int(kind), u, v)
     recorder.marks["impacts"] = 0  # none of them began in this period
+    stops = len(oscillator.stops)
+    sets = new_sets(motion, stops) if stops > 1 else None
     while True:
-        status = loop.advance(motion, u, v, runs, run.last, run.clock_end, recorder, samples)
+        status = loop.advance(motion, u, v, runs, run.last, run.clock_end, recorder, samples, sets)
         if status != loop.LOG_FULL:
             break
         recorder = grown(recorder)

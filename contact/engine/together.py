@@ -21,7 +21,7 @@ from contact.laws import NEWTON
 from contact.machine.compiled import kernel, part
 from contact.touch.impulses import MOST, moreau, sequence
 from contact.touch.newton import STEADY_PULL, newton_impact, restitution_at
-from contact.touch.passage import add_exchange, begin, close_touch, open_touch
+from contact.touch.passage import add_exchange, begin, close_touch, meet, open_touch
 from contact.touch.rests import hopping, hops_end, settle
 from contact.touch.sets import AFTER, CHANGES, IMPULSE, LEAVES, LOSS, RESTITUTION, SPEED, hold, push_back
 from contact.trajectory import CONTACT, IMPACT, INSIDE, OUTSIDE, STAY, SUSTAINED
@@ -33,34 +33,6 @@ HOPS, STAYS = 3, 4  # events of a stop that an impulse has left with a velocity;
 def rate_rounding(seen, u, v):
     """Bound of the rounding error of a velocity [m/s], by that of the height and the fastest change."""
     return tip_rounding(seen, u, v) * seen.fastest
-
-
-@part
-def lone_impact(motion, seen, runs, u, v, recorder):
-    """The impact at a stop of Newton's law that is met alone, and left with more than low hops, while all are
-    open.  This most frequent `instant` costs little; returns whether it was one."""
-    run = runs[0]
-    height, rate, pull = tip_state(seen, run.clock, u, v)
-    if seen.law != NEWTON:
-        return False
-    e, _slope = restitution_at(seen, rate)
-    rebound, rounding, stop = e * rate, tip_rounding(seen, u, v), run.stop
-    lowest = 1e3 * rounding * max(abs(pull), rounding * seen.fastest**2) / max(1.0 - e, EPS)
-    if not 0.5 * rebound * rebound > lowest:
-        return False
-    for j in range(runs.size - 1):
-        if j != stop:
-            other = seen_from(motion, j)
-            height, other_rate, pull = tip_state(other, run.clock, u, v)
-            if other_rate > 0.0 and abs(height) <= tip_rounding(other, u, v) + other_rate * rounding / rate:
-                return False
-    open_touch(recorder, stop, run.period, run.clock, rate, IMPACT, u, v)
-    newton_impact(seen, v, rate, e)
-    impulse = (1.0 + e) * rate / seen.inverse_mass
-    add_exchange(recorder, stop, 0.5 * (1.0 - e) * impulse * rate, impulse, math.nan)
-    close_touch(recorder, stop, run.period, run.clock, -rebound, u, v)
-    runs[1 + stop].contact_order = 1
-    return True
 
 
 @kernel
@@ -254,3 +226,46 @@ def instant(motion, runs, u, v, sets, recorder):
         if stops[j].regime != OUTSIDE:
             run.regime, run.stop = stops[j].regime, j
     return GOING
+
+
+@part
+def lone_impact(motion, seen, runs, u, v, recorder):
+    """The impact at a stop of Newton's law that is met alone, and left with more than low hops, while all are
+    open.  This most frequent `instant` costs little; returns whether it was one."""
+    run = runs[0]
+    height, rate, pull = tip_state(seen, run.clock, u, v)
+    if seen.law != NEWTON:
+        return False
+    e, _slope = restitution_at(seen, rate)
+    rebound, rounding, stop = e * rate, tip_rounding(seen, u, v), run.stop
+    lowest = 1e3 * rounding * max(abs(pull), rounding * seen.fastest**2) / max(1.0 - e, EPS)
+    if not 0.5 * rebound * rebound > lowest:
+        return False
+    for j in range(runs.size - 1):
+        if j != stop:
+            other = seen_from(motion, j)
+            height, other_rate, pull = tip_state(other, run.clock, u, v)
+            if other_rate > 0.0 and abs(height) <= tip_rounding(other, u, v) + other_rate * rounding / rate:
+                return False
+    open_touch(recorder, stop, run.period, run.clock, rate, IMPACT, u, v)
+    newton_impact(seen, v, rate, e)
+    impulse = (1.0 + e) * rate / seen.inverse_mass
+    add_exchange(recorder, stop, 0.5 * (1.0 - e) * impulse * rate, impulse, math.nan)
+    close_touch(recorder, stop, run.period, run.clock, -rebound, u, v)
+    runs[1 + stop].contact_order = 1
+    return True
+
+
+@part
+def meet_several(motion, runs, u, v, crosses, recorder, sets):
+    """A flight has met the stop of the run, or with `crosses` false grazes it; returns the status."""
+    run, status = runs[0], GOING
+    seen = seen_from(motion, run.stop)
+    if not crosses:
+        meet(seen, run, u, v, False, recorder)
+        runs[1 + run.stop].contact_order, run.contact_order = run.contact_order, 0
+    elif not lone_impact(motion, seen, runs, u, v, recorder):
+        sets.event[:] = 0
+        sets.event[run.stop] = CHANGES
+        status = instant(motion, runs, u, v, sets, recorder)
+    return status

@@ -40,7 +40,7 @@ SPEED, AFTER, IMPULSE, LOSS, RESTITUTION, PULL, PUSH = range(7)  # rows of `Sets
 
 
 class Sets(NamedTuple):
-    """Workspace of contacts at several stops; all arrays are empty for one stop."""
+    """Workspace of contacts at several stops."""
 
     rows: np.ndarray  # coefficients of the modes, row n of order n, shape (order + 1, columns)
     heights: np.ndarray  # series of the height over each stop [m], shape (stops, order + 1)
@@ -55,22 +55,20 @@ class Sets(NamedTuple):
 @kernel
 def new_sets(motion, count):
     """A workspace of zeros for `count` stops, with their coupling."""
-    stops = count if count > 1 else 0
-    coupling, modes = np.zeros((stops, stops)), motion.modes
-    for i in range(stops):
-        for j in range(stops):
+    coupling, modes = np.zeros((count, count)), motion.modes
+    for i in range(count):
+        for j in range(count):
             for k in range(modes.shape[1]):
                 coupling[i, j] += modes[STACKED * i + WEIGHT, k] * modes[STACKED * j + WEIGHT, k]
-    terms, columns = (ORDER + 1, modes.shape[1]) if stops else (0, 0)
     return Sets(
-        aligned(terms, columns),
-        np.zeros((stops, terms)),
-        np.zeros((stops, terms)),
+        aligned(ORDER + 1, modes.shape[1]),
+        np.zeros((count, ORDER + 1)),
+        np.zeros((count, ORDER + 1)),
         coupling,
-        np.zeros((stops, stops)),
-        np.zeros(stops, np.int64),
-        np.zeros(stops, np.int64),
-        np.zeros((7, stops)),
+        np.zeros((count, count)),
+        np.zeros(count, np.int64),
+        np.zeros(count, np.int64),
+        np.zeros((7, count)),
     )
 
 
