@@ -87,26 +87,26 @@ def new_workspace(motion):
 
 
 @kernel
-def earliest_touch(motion, flight, base, duration, runs):
+def earliest_touch(motion, flight, base, duration, run, states):
     """The first touch of any of several stops: outcome and time as of ``searched_flight``, and its stop."""
-    outcome, s, stop = FREE, duration, runs[0].stop
+    outcome, s, stop = FREE, duration, run.stop
     for j in range(stops_of(motion)):
-        found, at = searched_flight(seen_from(motion, j), flight, base, s, runs[1 + j].contact_order)
+        found, at = searched_flight(seen_from(motion, j), flight, base, s, states[j].contact_order)
         if found != FREE:
             outcome, s, stop = found, at, j
-    for j in range(1, runs.size):
-        runs[j].contact_order = 0 if s > 0.0 else runs[j].contact_order
+    for j in range(states.size):
+        states[j].contact_order = 0 if s > 0.0 else states[j].contact_order
     return outcome, s, stop
 
 
 @part
-def follow_flights(motion, u, v, runs, run_end, space, recorder, samples, sets):
+def follow_flights(motion, u, v, run, run_end, space, recorder, samples, sets):
     """Follow flights from strobe to strobe, to the next touch or the end of the run; returns the status.
 
     `run_end` is the number of the period of the end, and its clock.
     """
     last, clock_end = run_end
-    run, flight, whole, marks = runs[0], space.flight, space.whole, recorder.marks[0]
+    flight, whole, marks = space.flight, space.whole, recorder.marks[0]
     strobes, counts, status = recorder.strobes, recorder.counts, GOING
     while status == GOING:
         base, at_last = run.clock, run.period == last
@@ -115,7 +115,7 @@ def follow_flights(motion, u, v, runs, run_end, space, recorder, samples, sets):
             load_state(flight, u, v)
             count, order = 0, run.contact_order
             if sets is not None:
-                outcome, s, run.stop = earliest_touch(motion, flight, base, end - base, runs)
+                outcome, s, run.stop = earliest_touch(motion, flight, base, end - base, run, sets.states)
             elif samples is None:
                 outcome, s = searched_flight(motion, flight, base, end - base, order)
             else:
@@ -148,12 +148,11 @@ def follow_flights(motion, u, v, runs, run_end, space, recorder, samples, sets):
 def advance(motion, u, v, runs, last, clock_end, recorder, samples, sets=None):
     """Carry the deviations (u, v), shape (n_modes,) each, to the time `clock_end` [s] after strobe `last`.
 
-    They and `runs`, an array of ``contact.touch.passage.STATE``, are overwritten: the run, and behind it the
-    state of each of several stops.  These need `sets`, ``contact.touch.sets.Sets``; an order above zero in
-    the run says that they are to be settled.  With
-    `samples`, ``contact.flight.sampled_crossing.Samples``, crossings are looked for at samples, with None
-    they are proved.  Returns the status: DONE, LOG_FULL (call again with a longer log), or one of the
-    failures.
+    They and `runs`, a record array of ``contact.touch.passage.STATE`` of shape (1,), are overwritten.
+    Several stops need `sets`, ``contact.touch.sets.Sets``, and an order above zero in the run says that they
+    are to be settled first.  With `samples`, ``contact.flight.sampled_crossing.Samples``, crossings are
+    looked for at samples, with None they are proved.  Returns the status: DONE, LOG_FULL (call again with a
+    longer log), or one of the failures.
     """
     run, workspace = runs[0], new_workspace(motion)
     motion, u, v, recorder = borrowed(motion), borrowed(u), borrowed(v), borrowed(recorder)
@@ -162,7 +161,7 @@ def advance(motion, u, v, runs, last, clock_end, recorder, samples, sets=None):
     if sets is not None:
         if run.contact_order > 0:
             run.contact_order, sets.event[:] = 0, 0
-            status = instant(motion, runs, u, v, sets, recorder)
+            status = instant(motion, run, u, v, sets, recorder)
     while status < DONE:
         if is_full(recorder):
             status = LOG_FULL
@@ -171,15 +170,15 @@ def advance(motion, u, v, runs, last, clock_end, recorder, samples, sets=None):
         elif run.steps > MOST_STEPS:
             status = FAILED_STEPS
         elif run.regime == OUTSIDE:
-            status = follow_flights(motion, u, v, runs, (last, clock_end), space, recorder, samples, sets)
+            status = follow_flights(motion, u, v, run, (last, clock_end), space, recorder, samples, sets)
         elif sets is None:
             status = follow_contact(motion, u, v, run, last, clock_end, space, recorder)
         else:
-            status = follow_several(motion, u, v, runs, last, clock_end, space, recorder, sets)
+            status = follow_several(motion, u, v, run, last, clock_end, space, recorder, sets)
         if status == CROSSED or status == GRAZED:
             if sets is None:
                 meet(motion, run, u, v, status == CROSSED, recorder)
             else:
-                status = meet_several(motion, runs, u, v, status == CROSSED, recorder, sets)
+                status = meet_several(motion, run, u, v, status == CROSSED, recorder, sets)
     held(workspace)
     return status

@@ -43,9 +43,9 @@ def exchange_together(motion, run, stops, s, until, series, sets, space, recorde
 
 
 @part
-def follow_together(motion, u, v, runs, last, clock_end, space, recorder, sets):
+def follow_together(motion, u, v, run, last, clock_end, space, recorder, sets):
     """Follow closed contacts to the next instant or the end of the run; returns the status."""
-    run, stops, whole = runs[0], runs[1:], space.series
+    stops, whole = sets.states, space.series
     whole = fitted(whole, time_series.ORDER, motion.modes.shape[1])
     series = Series(sets.rows, whole.sums, whole.scalars, whole.scaled, whole.places)
     while True:
@@ -76,7 +76,7 @@ def follow_together(motion, u, v, runs, last, clock_end, space, recorder, sets):
                 if stops[j].regime == OUTSIDE and s > 0.0:
                     stops[j].contact_order = 0
             if happens > 0:
-                return instant(motion, runs, u, v, sets, recorder)
+                return instant(motion, run, u, v, sets, recorder)
         while sample_due(recorder, run.period, end):  # samples closer to the end than any step
             put_sample(recorder, u, v)
         run.clock = end
@@ -86,12 +86,11 @@ def follow_together(motion, u, v, runs, last, clock_end, space, recorder, sets):
 
 
 @part
-def follow_several(motion, u, v, runs, last, clock_end, space, recorder, sets):
+def follow_several(motion, u, v, run, last, clock_end, space, recorder, sets):
     """Follow closed contacts, or one under a law that is followed alone; returns the status."""
-    seen = seen_from(motion, runs[0].stop)
+    seen, own = seen_from(motion, run.stop), sets.states[run.stop]
     if touch.joins(seen):
-        return follow_together(motion, u, v, runs, last, clock_end, space, recorder, sets)
-    run, own = runs[0], runs[1 + runs[0].stop]
+        return follow_together(motion, u, v, run, last, clock_end, space, recorder, sets)
     status = follow_contact(seen, u, v, run, last, clock_end, space, recorder)
     own.regime, own.contact_order, run.contact_order = run.regime, run.contact_order, 0
     return status

@@ -182,8 +182,7 @@ def exact_trajectory(oscillator: ImpactOscillator, run: Run, samples: Samples | 
             kind, approach = (ImpactKind.STAY, 0.0) if stays else (ImpactKind.UNDER_WAY, np.nan)
             open_touch(recorder, each["stop"], run.first, run.clock, approach, int(kind), u, v)
     recorder.marks["impacts"] = 0  # none of them began in this period
-    stops = len(oscillator.stops)
-    sets = new_sets(motion, stops) if stops > 1 else None
+    sets = new_sets(motion, runs[1:]) if runs.size > 1 else None
     while True:
         status = loop.advance(motion, u, v, runs, run.last, run.clock_end, recorder, samples, sets)
         if status != loop.LOG_FULL:

@@ -4,8 +4,8 @@ At an instant the impulses of Newton's law come first (``contact.touch.impulses`
 met within rounding and all at which a point rests.  Then contacts with a force begin and end.  Last,
 accelerations decide which points stay at rest (``contact.touch.rests``).
 
-The state of each stop, its regime and order, is a record of ``contact.touch.passage.STATE`` behind that of
-the run.  The record of the run names the first stop that is closed, and its regime.
+Each stop has a state of its own, its regime and order (``Sets.states``).  That of the run names the first
+stop that is closed, and its regime.
 """
 
 import math
@@ -64,12 +64,12 @@ def meet_ties(motion, run, stops, u, v, sets):
 
 
 @kernel
-def strike_together(motion, runs, u, v, sets, recorder):
+def strike_together(motion, run, u, v, sets, recorder):
     """The impulses at all of Newton's stops that are met, or hold their point at rest; returns the status.
 
     Stops that are then left have the event `HOPS`; where no velocity is left the regime is SUSTAINED.
     """
-    run, stops = runs[0], runs[1:]
+    stops = sets.states
     members, numbers, count, hits = np.empty(stops.size, np.int64), np.empty((5, stops.size)), 0, 0
     for j in range(stops.size):
         seen, regime = seen_from(motion, j), stops[j].regime
@@ -111,9 +111,9 @@ def strike_together(motion, runs, u, v, sets, recorder):
 
 
 @kernel
-def change_contacts(motion, runs, u, v, sets, recorder):
+def change_contacts(motion, run, u, v, sets, recorder):
     """Begin and end the contacts with a force; returns the status."""
-    run, stops = runs[0], runs[1:]
+    stops = sets.states
     for j in range(stops.size):
         seen, regime = seen_from(motion, j), stops[j].regime
         if seen.law == NEWTON:
@@ -149,9 +149,9 @@ def change_contacts(motion, runs, u, v, sets, recorder):
 
 
 @kernel
-def end_of_hops(motion, runs, u, v, sets):
+def end_of_hops(motion, run, u, v, sets):
     """Put points to rest whose hops are low; returns the velocities of all points over their stops [m/s]."""
-    run, stops = runs[0], runs[1:]
+    stops = sets.states
     rates, low, closed = np.zeros(stops.size), False, False
     for j in range(stops.size):
         closed = closed or stops[j].regime != OUTSIDE
@@ -174,9 +174,9 @@ def end_of_hops(motion, runs, u, v, sets):
 
 
 @kernel
-def begin_stays(motion, runs, speeds, u, v, sets, recorder):
+def begin_stays(motion, run, speeds, u, v, sets, recorder):
     """Open the rows of rests that hops of these `speeds` lead to; NaN for the other stops."""
-    run, stops, some = runs[0], runs[1:], False
+    stops, some = sets.states, False
     hops = np.zeros(stops.size)
     for j in range(stops.size):
         hops[j], some = (0.0, some) if math.isnan(speeds[j]) else (speeds[j], True)
@@ -198,19 +198,19 @@ def begin_stays(motion, runs, speeds, u, v, sets, recorder):
 
 
 @kernel
-def instant(motion, runs, u, v, sets, recorder):
+def instant(motion, run, u, v, sets, recorder):
     """What happens at an instant at which stops have an event, or are met; returns the status."""
-    run, stops, before = runs[0], runs[1:], np.empty(runs.size - 1, np.int64)
+    stops, before = sets.states, np.empty(sets.states.size, np.int64)
     for j in range(stops.size):
         before[j] = stops[j].regime
     meet_ties(motion, run, stops, u, v, sets)
-    status = strike_together(motion, runs, u, v, sets, recorder)
+    status = strike_together(motion, run, u, v, sets, recorder)
     if status == GOING:
-        status = change_contacts(motion, runs, u, v, sets, recorder)
+        status = change_contacts(motion, run, u, v, sets, recorder)
     if status != GOING:
         return status
     settle(motion, run.clock, stops, u, v, sets)
-    rates = end_of_hops(motion, runs, u, v, sets)
+    rates = end_of_hops(motion, run, u, v, sets)
     hold(motion, run.clock, stops, u, v, sets)
     for j in range(stops.size):
         stays = stops[j].regime == SUSTAINED
@@ -220,7 +220,7 @@ def instant(motion, runs, u, v, sets, recorder):
             stops[j].contact_order = 0  # an impulse at another stop sends the point back at once
         rates[j] = max(-rates[j], 0.0) if stays and before[j] != SUSTAINED else math.nan
         sets.event[j] = 0
-    begin_stays(motion, runs, rates, u, v, sets, recorder)
+    begin_stays(motion, run, rates, u, v, sets, recorder)
     run.regime = OUTSIDE
     for j in range(stops.size - 1, -1, -1):
         if stops[j].regime != OUTSIDE:
@@ -229,10 +229,9 @@ def instant(motion, runs, u, v, sets, recorder):
 
 
 @part
-def lone_impact(motion, seen, runs, u, v, recorder):
+def lone_impact(motion, seen, run, u, v, recorder, sets):
     """The impact at a stop of Newton's law that is met alone, and left with more than low hops, while all are
     open.  This most frequent `instant` costs little; returns whether it was one."""
-    run = runs[0]
     height, rate, pull = tip_state(seen, run.clock, u, v)
     if seen.law != NEWTON:
         return False
@@ -241,7 +240,7 @@ def lone_impact(motion, seen, runs, u, v, recorder):
     lowest = 1e3 * rounding * max(abs(pull), rounding * seen.fastest**2) / max(1.0 - e, EPS)
     if not 0.5 * rebound * rebound > lowest:
         return False
-    for j in range(runs.size - 1):
+    for j in range(sets.states.size):
         if j != stop:
             other = seen_from(motion, j)
             height, other_rate, pull = tip_state(other, run.clock, u, v)
@@ -252,20 +251,20 @@ def lone_impact(motion, seen, runs, u, v, recorder):
     impulse = (1.0 + e) * rate / seen.inverse_mass
     add_exchange(recorder, stop, 0.5 * (1.0 - e) * impulse * rate, impulse, math.nan)
     close_touch(recorder, stop, run.period, run.clock, -rebound, u, v)
-    runs[1 + stop].contact_order = 1
+    sets.states[stop].contact_order = 1
     return True
 
 
 @part
-def meet_several(motion, runs, u, v, crosses, recorder, sets):
+def meet_several(motion, run, u, v, crosses, recorder, sets):
     """A flight has met the stop of the run, or with `crosses` false grazes it; returns the status."""
-    run, status = runs[0], GOING
+    status = GOING
     seen = seen_from(motion, run.stop)
     if not crosses:
         meet(seen, run, u, v, False, recorder)
-        runs[1 + run.stop].contact_order, run.contact_order = run.contact_order, 0
-    elif not lone_impact(motion, seen, runs, u, v, recorder):
+        sets.states[run.stop].contact_order, run.contact_order = run.contact_order, 0
+    elif not lone_impact(motion, seen, run, u, v, recorder, sets):
         sets.event[:] = 0
         sets.event[run.stop] = CHANGES
-        status = instant(motion, runs, u, v, sets, recorder)
+        status = instant(motion, run, u, v, sets, recorder)
     return status

@@ -129,8 +129,7 @@ STATE = np.dtype(
     [(name, "i8") for name in ("regime", "contact_order", "stop", "period", "evaluations", "steps")]
     + [(name, "f8") for name in ("clock", "wait", "rebound", "memory0", "memory1")]
 )
-"""The state of a motion besides its deviations: ``contact.trajectory.State`` for kernels.  With several stops
-more records follow, one for each stop, of which regime and contact_order count.
+"""The state of a motion besides its deviations: ``contact.trajectory.State`` for kernels.
 
 regime, wait, rebound: as there; contact_order: number of derivatives of the height over `stop` that vanish at
 the start of the flight; stop: number of the stop that is touched or was the last to be; period, clock: number

@@ -50,11 +50,13 @@ class Sets(NamedTuple):
     members: np.ndarray  # numbers of some stops
     event: np.ndarray  # what happens at a stop at the end of a step: 0, CHANGES or LEAVES
     numbers: np.ndarray  # of the members, shape (7, stops)
+    states: np.ndarray  # ``contact.touch.passage.STATE`` of each stop, of which regime and order count
 
 
 @kernel
-def new_sets(motion, count):
-    """A workspace of zeros for `count` stops, with their coupling."""
+def new_sets(motion, states):
+    """A workspace of zeros for stops with these `states`, with their coupling."""
+    count = states.size
     coupling, modes = np.zeros((count, count)), motion.modes
     for i in range(count):
         for j in range(count):
@@ -69,6 +71,7 @@ def new_sets(motion, count):
         np.zeros(count, np.int64),
         np.zeros(count, np.int64),
         np.zeros((7, count)),
+        states,
     )
 
 
