@@ -157,13 +157,14 @@ def advance(motion, u, v, runs, last, clock_end, recorder, samples, sets=None):
     run, workspace = runs[0], new_workspace(motion)
     motion, u, v, recorder = borrowed(motion), borrowed(u), borrowed(v), borrowed(recorder)
     space = borrowed(workspace)
-    status = GOING
+    status, rows = GOING, 2
     if sets is not None:
+        rows = 2 * sets.states.size
         if run.contact_order > 0:
             run.contact_order, sets.event[:] = 0, 0
             status = instant(motion, run, u, v, sets, recorder)
     while status < DONE:
-        if is_full(recorder):
+        if is_full(recorder, rows):
             status = LOG_FULL
         elif recorder.marks[0].impacts > MOST_IMPACTS:
             status = FAILED_CHATTER

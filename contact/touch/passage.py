@@ -78,9 +78,8 @@ def put_state(row, at, u, v):
 
 
 @part
-def is_full(record):
-    """Whether the log has no rows left for a touch of each stop and the stays that may follow."""
-    rows = 2 * record.marks.size
+def is_full(record, rows=2):
+    """Whether the log has less than so many `rows` left, one for a touch and one for a stay that follows."""
     return record.log.size > 0 and record.marks[0].logged > record.log.size - rows
 
 
