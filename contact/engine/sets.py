@@ -22,7 +22,7 @@ from contact.touch.exchange import UNIFORM, exchange_of
 from contact.touch.passage import CLOSEST, add_exchange, put_state
 from contact.touch.series import Series, fitted
 from contact.touch.sets import hold, step
-from contact.trajectory import CONTACT, OUTSIDE, SUSTAINED
+from contact.trajectory import CONTACT, INSIDE, OUTSIDE, SUSTAINED
 
 
 @kernel
@@ -40,6 +40,9 @@ def exchange_together(motion, run, stops, s, until, series, sets, space, recorde
             span, known = (hops, s), recorder.log[row].peak_force
             work, impulse, force = exchange_of(series, sets.forces[j], rates, UNIFORM, span, known)
             add_exchange(recorder, j, work if stops[j].regime == CONTACT else 0.0, impulse, force)
+        elif stops[j].regime == INSIDE:
+            known = recorder.log[recorder.marks[j].row].peak_force
+            add_exchange(recorder, j, 0.0, 0.0, max(known, 0.0))
 
 
 @part

@@ -77,7 +77,7 @@ def start_of(
     q, q_rate = steady_motion(motion, clock) if steady is None else steady
     u, v = state.displacement - q, state.velocity - q_rate
     runs = np.zeros(1, dtype=STATE)
-    regime = int(state.regime)  # type: ignore[arg-type]
+    regime = int(state.regimes.get(state.stop, OUTSIDE))
     height, velocity, _acceleration = tip_state(motion, clock, u, v)
     rounding = tip_rounding(motion, u, v)
     near = HELD_WITHIN * rounding

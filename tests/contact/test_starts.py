@@ -111,3 +111,18 @@ def test_only_a_force_that_is_cut_leaves_the_tip_free_behind_the_stop(law):
     assert simulate(oscillator, behind, duration=1e-6).end.regime == Regime.CONTACT
     with pytest.raises(InvalidValue, match="regime"):
         simulate(oscillator, dataclasses.replace(behind, regime=Regime.INSIDE), duration=1e-6)
+
+
+def test_one_regime_for_each_stop():
+    """Of a single stop a tuple of one says the same as a number, and a longer one is refused."""
+    oscillator = ImpactOscillator(
+        model=ModalModel(omega=[9.0], decay_rate=[0.1], phi=[1.0], participation=[0.0]),
+        stop=Stop(gap=0.01, law=LinearContact(stiffness=STIFF)),
+    )
+    start = State(displacement=[0.02], velocity=[0.0], regime=1)
+    one, other = (
+        simulate(oscillator, dataclasses.replace(start, regime=regime), duration=1.0) for regime in (1, (1,))
+    )
+    assert one.end.displacement == other.end.displacement
+    with pytest.raises(InvalidValue, match=r"regime of the state has 2 entries; it must have one for each"):
+        simulate(oscillator, dataclasses.replace(start, regime=(1, 0)), duration=1.0)
