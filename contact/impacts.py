@@ -52,8 +52,8 @@ class Impacts:
     stop : ndarray of int, shape (n_impacts,)
         Numbers of the stops, from 0 on.
     together : ndarray of bool, shape (n_impacts,)
-        Whether the impact of Newton's law was one with those of other stops, that were met at the same
-        instant within rounding, or at which a point rested.
+        Whether Newton's law gave this impulse for several stops together: others were met at the same
+        instant, within rounding, or held a point at rest.
     deviations_start, deviations_end : ndarray, shape (n_impacts, 2, n_modes)
         Deviations (u, v) just before the touch and just after the release.
     """

@@ -7,8 +7,8 @@ followed through the contact until the tip leaves the wall (``contact.touch``). 
 costs one multiplication by the flow of a period and a proof, most often from the lowest mode alone.
 
 With several stops each flight is searched for a touch of one after the other, always up to the earliest touch
-found so far.  What then happens, and all contacts but those of laws that are followed alone, is that of
-``contact.engine.together``.
+found so far.  ``contact.engine.together`` says what happens there, and ``contact.engine.sets`` follows the
+contacts.
 """
 
 from typing import NamedTuple

@@ -6,9 +6,9 @@ neither N nor d'' differs from zero within rounding, the next derivatives decide
 at each release.  A point that all of them leave undecided stays.  If other stops hold it as well, it rests
 without a force.
 
-Hops beside other contacts end as those of ``contact.touch.newton`` do.  The mean forces of hops are the
-forces N that would hold their points at rest beside the other contacts.  With the speeds w over these stops,
-and impulses that take them off, G p = w, the hops end after W = 2 w p/((1 - e) w N), if N is constant.
+Hops beside other contacts end as they do alone, see ``contact.touch.newton``.  The mean forces of hops are
+the forces N that would hold their points at rest beside the other contacts.  With the speeds w over these
+stops, and impulses that take them off, G p = w, the hops end after W = 2 w p/((1 - e) w N), if N is constant.
 """
 
 import numpy as np

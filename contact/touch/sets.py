@@ -28,15 +28,14 @@ from contact.machine.compiled import aligned, kernel, part
 from contact.touch.impulses import inverse_of
 from contact.touch.newton import acceleration_rounding
 from contact.touch.series import limited_by_force
-from contact.touch.time_series import _EDGE, ORDER, OVERFLOW, longest_of_modes
+from contact.touch.time_series import EDGE, ORDER, OVERFLOW, longest_of_modes
 from contact.trajectory import CONTACT, INSIDE, OUTSIDE, SUSTAINED
 
 PASSIVE = 4  # order of a stop whose point rests because others hold it: it gives no force
-CHANGES, LEAVES = (
-    1,
-    2,
-)  # events of a stop: a touch, or the end of what its regime says; the release from behind
-SPEED, AFTER, IMPULSE, LOSS, RESTITUTION, PULL, PUSH = range(7)  # rows of `Sets.numbers`
+CHANGES, LEAVES = 1, 2
+"""Events of a stop: it is met, or its force ends or begins; its point leaves from behind the wall."""
+
+SPEED, AFTER, IMPULSE, LOSS, RESTITUTION, PULL, ROOT = range(7)  # rows of `Sets.numbers`
 
 
 class Sets(NamedTuple):
@@ -49,7 +48,7 @@ class Sets(NamedTuple):
     inverse: np.ndarray  # of G over the stops that hold their point at rest, by their places in `members`
     members: np.ndarray  # numbers of some stops
     event: np.ndarray  # what happens at a stop at the end of a step: 0, CHANGES or LEAVES
-    numbers: np.ndarray  # of the members, shape (7, stops)
+    numbers: np.ndarray  # of the members, or of each stop, shape (7, stops)
     states: np.ndarray  # ``contact.touch.passage.STATE`` of each stop, of which regime and order count
 
 
@@ -162,7 +161,7 @@ def longest_step(motion, stops, u, v, sets):
     for j in range(stops.size):
         if stops[j].regime == CONTACT or stops[j].regime == SUSTAINED:
             mobility = math.sqrt(sets.coupling[j, j])
-            h = limited_by_force(h, sets.forces[j], ORDER - 2, mobility, speed, _EDGE)
+            h = limited_by_force(h, sets.forces[j], ORDER - 2, mobility, speed, EDGE)
     return h
 
 
@@ -190,7 +189,7 @@ def step(motion, clock, stops, u, v, limit, sets):
     if not h > EPS * clock:
         return math.nan
     for j in range(stops.size):
-        seen, regime, roots = seen_from(motion, j), stops[j].regime, sets.numbers[PUSH]
+        seen, regime, roots = seen_from(motion, j), stops[j].regime, sets.numbers[ROOT]
         margin, leaves, roots[j], sets.event[j] = tip_rounding(seen, u, v), -1.0, -1.0, 0
         if regime == OUTSIDE:
             roots[j] = touch_of(sets.heights[j], stops[j].contact_order, h, margin)
@@ -212,7 +211,7 @@ def step(motion, clock, stops, u, v, limit, sets):
         if roots[j] >= 0.0 and (first < 0.0 or roots[j] < first):
             first = roots[j]
     for j in range(stops.size):
-        at_once = first >= 0.0 and sets.numbers[PUSH, j] == first
+        at_once = first >= 0.0 and sets.numbers[ROOT, j] == first
         sets.event[j] = max(sets.event[j], CHANGES) if at_once else 0
     return first if first >= 0.0 else h
 

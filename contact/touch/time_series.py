@@ -26,7 +26,7 @@ derivatives."""
 
 TOLERANCE = 0.1 * EPS  # size of the last terms of a step, relative to the modal speeds
 
-_EDGE = TOLERANCE ** (1.0 / (ORDER - 1))
+EDGE = TOLERANCE ** (1.0 / (ORDER - 1))
 
 OVERFLOW = 1e300
 """Coefficients beyond this are about to leave the range of doubles, at some 1e18 times the stiffness of the
@@ -102,7 +102,7 @@ def longest_step(motion, stored, u, v, series):
     if not (abs(depth[ORDER]) < OVERFLOW and abs(force[ORDER - 2]) < OVERFLOW):
         return math.nan
     h, speed = longest_of_modes(motion, stored, u, v, series.rows)
-    return limited_by_force(h, force, ORDER - 2, math.sqrt(motion.inverse_mass), speed, _EDGE)
+    return limited_by_force(h, force, ORDER - 2, math.sqrt(motion.inverse_mass), speed, EDGE)
 
 
 @part

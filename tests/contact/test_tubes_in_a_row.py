@@ -52,7 +52,7 @@ def test_motion_of_the_tubes_and_impulses_between_them():
     def middles(q, v):
         return np.ravel([[1e3 * model.points[name].row @ x for name in names] for x in (q, v)])
 
-    # the modes are those of the case: central differences give its digits
+    # the modes agree with the case: central differences give its digits
     y = np.zeros(32)
     for _ in range(5000):
         y[15:30] += 2e-4 * rates(0.0, y)[15:30]
