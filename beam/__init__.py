@@ -35,15 +35,13 @@ __version__ = "0.9.0"
 
 if TYPE_CHECKING:
     from .assembly import Discretization, assemble, default_elements
-    from .backbone import Backbone, backbone_coefficient
     from .centreline import Arc, Centreline, Straight
     from .damping import ConstantLossFactor, ConstantRatio, Damping, MeasuredDecay, Rayleigh, StripDamping
     from .export import write_frames, write_mode_motion, write_modes
-    from .finite_rotation import FiniteRotation
     from .frequency_equation import ExactModes, UniformBeam, exact_modes, frequency_function
-    from .harmonic_balance import PeriodicMotion, periodic_motion
+    from .large_amplitude import Backbone, FiniteRotation, PeriodicMotion, backbone_coefficient, periodic_motion
     from .material import ALUMINA, BRASS, DAMPING_TAPE, STEEL, Material
-    from .modal_change import (
+    from .derivatives import (
         ModalChange,
         decay_rate_change,
         free_period_change,

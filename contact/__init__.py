@@ -80,8 +80,8 @@ from contact.impacts import Impacts
 from contact.laws import ContactLaw, HertzContact, HuntCrossley, LinearContact, NewtonRestitution
 from contact.maps.nonlinear_mode import NonlinearMode
 from contact.maps.nordmark import NordmarkMap
-from contact.maps.nordmark_bands import Band, band
-from contact.maps.nordmark_orbits import MapFamily, MaximalOrbit, maximal_period, maximal_periods
+from contact.maps.nordmark_bands import Band, frequency_band
+from contact.maps.nordmark_orbits import MapFamily, MaximalOrbit, coexisting_m, maximal_m
 from contact.maps.stroboscope import StrobedMap, StrobedOrbit, StroboscopicMap
 from contact.orbits.families.single_impact import MaximalFamily, SingleImpactOrbit
 from contact.oscillator import ImpactOscillator

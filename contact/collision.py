@@ -33,8 +33,9 @@ from typing import Any
 import numpy as np
 
 from beam.parameters import InvalidValue, require, require_kind, require_whole
-from contact.flight.modal_flow import free_flow, propagate, steady_motion, tip_rounding
-from contact.flight.motion import INVERSE_OMEGA, LOAD, Motion, with_only_mode
+from contact.flight.modal_flow import free_flow, propagate, steady_motion
+from contact.flight.numbers import INVERSE_OMEGA, LOAD, Numbers, with_only_mode
+from contact.flight.tip import tip_rounding
 from contact.impacts import Impacts
 from contact.oscillator import ImpactOscillator, require_one_stop
 from contact.simulation import simulate
@@ -98,9 +99,9 @@ class Collision:
     returns: bool
 
 
-def _higher_energy(motion: Motion, k: int, u: np.ndarray, v: np.ndarray) -> float:
+def _higher_energy(numbers: Numbers, k: int, u: np.ndarray, v: np.ndarray) -> float:
     """Energy of the free motion of all modes but mode 1, which is number `k` [J]."""
-    return float(0.5 * np.sum(np.delete(v, k) ** 2 + np.delete(motion.omega * u, k) ** 2))
+    return float(0.5 * np.sum(np.delete(v, k) ** 2 + np.delete(numbers.omega * u, k) ** 2))
 
 
 def collisions(trajectory: Trajectory, *, unfinished: str = "refuse") -> list[Collision]:
@@ -115,40 +116,44 @@ def collisions(trajectory: Trajectory, *, unfinished: str = "refuse") -> list[Co
     unfinished : {"refuse", "drop"}
         What to do with a last collision that is not final when the trajectory ends.
     """
-    run = require_kind("trajectory", trajectory, Trajectory, "a Trajectory, from simulate")
-    motion, impacts, k = run.oscillator.motion(), run.impacts, run.oscillator.model.leading_mode
-    single = with_only_mode(motion, k)
+    trajectory = require_kind("trajectory", trajectory, Trajectory, "a Trajectory, from simulate")
+    numbers, impacts, k = (
+        trajectory.oscillator.numbers(),
+        trajectory.impacts,
+        trajectory.oscillator.model.leading_mode,
+    )
+    single = with_only_mode(numbers, k)
     words = "load drives a higher mode of zero frequency; for a virtual motion it must be zero there"
-    require(not np.delete(motion.row(LOAD), k).any(), words)
+    require(not np.delete(numbers.row(LOAD), k).any(), words)
     require(unfinished in ("refuse", "drop"), f'unfinished is {unfinished!r}; it must be "refuse" or "drop"')
     rows = np.flatnonzero(impacts.kind != ImpactKind.GRAZE).tolist()
     stays, found = impacts.kind == ImpactKind.STAY, list[Collision]()
     while rows:
         first = last = rows.pop(0)
         outgoing, minimum = _outgoing(single, k, impacts, last)
-        while rows and (stays[rows[0]] or -_length(motion, impacts, rows[0], last) < minimum):
+        while rows and (stays[rows[0]] or -_length(numbers, impacts, rows[0], last) < minimum):
             last = rows.pop(0)
             outgoing, minimum = _outgoing(single, k, impacts, last)
         under_way = stays[first] or math.isnan(impacts.approach[first])  # when the run began
-        if not impacts.end[last] + minimum <= run.end.time:
+        if not impacts.end[last] + minimum <= trajectory.end.time:
             if unfinished == "drop" or under_way:
                 break
             raise InvalidValue(
-                f"trajectory ends at {run.end.time:.6g} s, before the collision that began at "
+                f"trajectory ends at {trajectory.end.time:.6g} s, before the collision that began at "
                 f"{impacts.start[first]:.6g} s is final; run it about one drive period longer"
             )
         if not under_way:
-            found.append(_measure(motion, k, impacts, slice(first, last + 1), outgoing))
+            found.append(_measure(numbers, k, impacts, slice(first, last + 1), outgoing))
     return found
 
 
-def _length(motion: Motion, impacts: Impacts, first: Any, last: Any) -> Any:
+def _length(numbers: Numbers, impacts: Impacts, first: Any, last: Any) -> Any:
     """Time from the start of one touch to the release of another, to rounding in a run of any length [s]."""
-    periods = impacts.period[last] - impacts.period[first]
-    return periods * motion.period + (impacts.end_clock[last] - impacts.clock[first])
+    stretches = impacts.stretch[last] - impacts.stretch[first]
+    return stretches * numbers.period + (impacts.end_clock[last] - impacts.clock[first])
 
 
-def _outgoing(single: Motion, k: int, impacts: Impacts, last: int) -> tuple[VirtualMotion, float]:
+def _outgoing(single: Numbers, k: int, impacts: Impacts, last: int) -> tuple[VirtualMotion, float]:
     """The virtual motion after an impact, and the time from there to its next minimum [s].
 
     The time is infinite if the contact has not ended or no minimum comes within two drive periods.
@@ -159,10 +164,10 @@ def _outgoing(single: Motion, k: int, impacts: Impacts, last: int) -> tuple[Virt
     return virtual, minima[0] if minima else math.inf
 
 
-def _measure(motion: Motion, k: int, impacts: Impacts, rows: slice, outgoing: VirtualMotion) -> Collision:
+def _measure(numbers: Numbers, k: int, impacts: Impacts, rows: slice, outgoing: VirtualMotion) -> Collision:
     """The numbers of the collision of these impacts."""
-    first, last, single = rows.start, rows.stop - 1, outgoing.motion
-    touch, length = float(impacts.start[first]), float(_length(motion, impacts, first, last))
+    first, last, single = rows.start, rows.stop - 1, outgoing.numbers
+    touch, length = float(impacts.start[first]), float(_length(numbers, impacts, first, last))
     (u_in, v_in), (u_out, v_out) = impacts.deviations_start[first], impacts.deviations_end[last]
     incoming = VirtualMotion(single, float(impacts.clock[first]), u_in[k], v_in[k])
 
@@ -176,7 +181,7 @@ def _measure(motion: Motion, k: int, impacts: Impacts, rows: slice, outgoing: Vi
 
     # jump of mode 1 over the collision, carried back to t_in
     u_free, v_free, back = np.empty_like(u_in), np.empty_like(v_in), s_in - length
-    propagate(motion, u_in, v_in, length, u_free, v_free)
+    propagate(numbers, u_in, v_in, length, u_free, v_free)
     jump = np.array([outgoing.u[0] - u_free[k], outgoing.v[0] - v_free[k]])
     shift, change = single.tip(free_flow(single, back) @ jump).tolist()
 
@@ -190,8 +195,8 @@ def _measure(motion: Motion, k: int, impacts: Impacts, rows: slice, outgoing: Vi
         restitution, delay = -outgoing.at(s_out)[1] / speed, s_out - back
 
     force = float(np.fmax.reduce(impacts.peak_force[rows]))
-    gained = _higher_energy(motion, k, u_out, v_out) - _higher_energy(motion, k, u_free, v_free)
-    amplitudes = np.hypot(u_in, v_in * motion.row(INVERSE_OMEGA))  # of zero frequency, the displacement
+    gained = _higher_energy(numbers, k, u_out, v_out) - _higher_energy(numbers, k, u_free, v_free)
+    amplitudes = np.hypot(u_in, v_in * numbers.row(INVERSE_OMEGA))  # of zero frequency, the displacement
     amplitudes[k] = 0.0
     return Collision(
         time=touch + s_in,
@@ -204,10 +209,10 @@ def _measure(motion: Motion, k: int, impacts: Impacts, rows: slice, outgoing: Vi
         shift=shift,
         deceleration=-incoming.at(s_in)[2],
         impacts=int(np.count_nonzero(impacts.kind[rows] == ImpactKind.IMPACT)),
-        contact_time=float(np.sum(_length(motion, impacts, rows, rows))),
+        contact_time=float(np.sum(_length(numbers, impacts, rows, rows))),
         first_touch=touch,
         real_approach=float(impacts.approach[first]),
-        ringing=motion.most_at_tip(amplitudes),
+        ringing=numbers.most_at_tip(amplitudes),
         energy_to_higher_modes=gained,
         energy_lost=float(np.sum(impacts.loss[rows])),
         impulse=float(np.sum(impacts.impulse[rows])),
@@ -242,7 +247,7 @@ def before_collision(oscillator: ImpactOscillator) -> State:
     """The steady motion of a driven `oscillator`, where the tip is lowest in the first drive period."""
     require_one_stop(oscillator, "a collision")
     _ = oscillator.mean_height  # refuses an oscillator without a steady motion
-    motion = oscillator.motion()
-    lowest = math.atan2(-motion.tip_sine, -motion.tip_cosine) % (2 * math.pi) / motion.drive
-    q, q_rate = steady_motion(motion, lowest)
+    numbers = oscillator.numbers()
+    lowest = math.atan2(-numbers.tip_sine, -numbers.tip_cosine) % (2 * math.pi) / numbers.drive
+    q, q_rate = steady_motion(numbers, lowest)
     return State(displacement=q, velocity=q_rate, time=lowest)

@@ -12,8 +12,6 @@ import numpy as np
 
 from beam.parameters import final, require_array, require_within
 
-EPS = 2.220446049250313e-16
-
 
 @final
 @dataclass(frozen=True, kw_only=True)
@@ -54,14 +52,3 @@ class HarmonicDrive:
         """Base displacement at `time` [s], same shape [m]."""
         times = require_array("time", time, "s", words="a time or an array of times")
         return self.amplitude * np.sin(self.angular_frequency * times)
-
-
-def split_time(time: float | np.ndarray, period: float) -> tuple[np.ndarray, np.ndarray]:
-    """Times as number of the drive period and time since its strobe [s]."""
-    index = np.floor(time / period)
-    clock = time - index * period
-    # a time within rounding of a strobe belongs to that strobe
-    late = clock > period * (1 - 4 * EPS * np.maximum(index, 1))
-    index, clock = np.where(late, index + 1, index), np.where(late, 0.0, np.maximum(clock, 0.0))
-    clock = np.where(clock <= 4 * EPS * index * period, 0.0, clock)
-    return index.astype(np.int64), clock

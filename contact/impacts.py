@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 
 from beam.parameters import require
-from contact.drive import split_time
+from contact.flight.clock import split_time
 from contact.flight.modal_flow import steady_motion
-from contact.flight.motion import Motion
+from contact.flight.numbers import Numbers
 from contact.oscillator import ImpactOscillator
 
 CSV = dict(stop="1", kind="1", together="1", start="s", end="s", approach="m/s", rebound="m/s", loss="J")
@@ -24,16 +24,16 @@ CSV |= dict(impulse="N s", peak_force="N")
 class Impacts:
     """The touches of the tip, in the order in which they began.
 
-    Times are kept as drive periods and the rest, and states as deviations u = q - q_s and v = q' - q_s' from
-    the steady motion q_s of the `oscillator`.  Both are right to rounding however long the run.  Times in
-    seconds and modal states are made of them on demand.
+    A time is kept as the number of a stretch, from one strobe to the next, and the time since its strobe.  A
+    state is kept as deviations u = q - q_s and v = q' - q_s' from the steady motion q_s of the `oscillator`.
+    Both are right to rounding however long the run.  Times in seconds and modal states are made on demand.
 
     Parameters
     ----------
-    period : ndarray of int, shape (n_impacts,)
-        Number of the drive period in which a touch begins.
+    stretch : ndarray of int, shape (n_impacts,)
+        Number of the stretch, from strobe to strobe, in which a touch begins.
     clock, end_clock : ndarray, shape (n_impacts,)
-        First touch and release, counted from the strobe that begins this period [s]; equal for an impact
+        First touch and release, counted from the strobe that begins this stretch [s]; equal for an impact
         law, the second NaN for a contact that had not ended.
     approach, rebound : ndarray, shape (n_impacts,)
         Velocity at both, positive towards the stop [m/s]; an approach before the run is NaN.
@@ -59,7 +59,7 @@ class Impacts:
     """
 
     oscillator: ImpactOscillator = field(repr=False)
-    period: np.ndarray
+    stretch: np.ndarray
     clock: np.ndarray
     end_clock: np.ndarray
     approach: np.ndarray
@@ -78,9 +78,9 @@ class Impacts:
 
     @staticmethod
     def of_states(
-        oscillator: ImpactOscillator, *, times: np.ndarray, states: np.ndarray, **numbers: np.ndarray
+        oscillator: ImpactOscillator, *, times: np.ndarray, states: np.ndarray, **columns: np.ndarray
     ) -> Impacts:
-        """Touches that another program has found; `numbers` are approach to stop of the list above.
+        """Touches that another program has found; `columns` are approach to stop of the list above.
 
         Without impulse or peak force these are NaN; without them `stop` is 0 and `together` false.
 
@@ -90,19 +90,19 @@ class Impacts:
         count = times.shape[1]
         unknown = dict.fromkeys(("impulse", "peak_force"), np.full(count, np.nan))
         unknown |= {"stop": np.zeros(count, dtype=np.int64), "together": np.zeros(count, dtype=bool)}
-        given, valid = ", ".join(sorted(numbers.keys() - unknown.keys())), "approach, kind, loss, rebound"
-        require(given == valid, f"numbers has {given or 'no entries'}; it must have {valid}")
-        period, clock = split_time(times[0], oscillator.period)
-        end_clock, motion = times[1] - period * oscillator.period, oscillator.numbers()
-        before, after = states - steady_states(motion, np.array([clock, end_clock]) % motion.period)
+        given, valid = ", ".join(sorted(columns.keys() - unknown.keys())), "approach, kind, loss, rebound"
+        require(given == valid, f"columns has {given or 'no entries'}; it must have {valid}")
+        stretch, clock = split_time(times[0], oscillator.period)
+        end_clock, numbers = times[1] - stretch * oscillator.period, oscillator.stacked()
+        before, after = states - steady_states(numbers, np.array([clock, end_clock]) % numbers.period)
         return Impacts(
             oscillator=oscillator,
-            period=period,
+            stretch=stretch,
             clock=clock,
             end_clock=end_clock,
             deviations_start=before,
             deviations_end=after,
-            **(unknown | numbers),
+            **(unknown | columns),
         )
 
     def write_csv(self, path: str | Path) -> None:
@@ -115,12 +115,12 @@ class Impacts:
     @cached_property
     def start(self) -> np.ndarray:
         """Times of the first touch [s], shape (n_impacts,)."""
-        return self.period * self.oscillator.period + self.clock
+        return self.stretch * self.oscillator.period + self.clock
 
     @cached_property
     def end(self) -> np.ndarray:
         """Times of the release [s], shape (n_impacts,)."""
-        return self.period * self.oscillator.period + self.end_clock
+        return self.stretch * self.oscillator.period + self.end_clock
 
     @cached_property
     def duration(self) -> np.ndarray:
@@ -130,8 +130,10 @@ class Impacts:
     @cached_property
     def _steady(self) -> tuple[tuple[np.ndarray, np.ndarray], ...]:
         """Steady displacements and velocities at `start`, and at `end`."""
-        motion = self.oscillator.numbers()
-        return tuple(steady_motion(motion, np.fmod(at, motion.period)) for at in (self.clock, self.end_clock))
+        numbers = self.oscillator.stacked()
+        return tuple(
+            steady_motion(numbers, np.fmod(at, numbers.period)) for at in (self.clock, self.end_clock)
+        )
 
     @cached_property
     def displacement_start(self) -> np.ndarray:
@@ -154,11 +156,11 @@ class Impacts:
         return self._steady[1][1] + self.deviations_end[:, 1]
 
 
-def steady_states(motion: Motion, clock: float | np.ndarray) -> np.ndarray:
+def steady_states(numbers: Numbers, clock: float | np.ndarray) -> np.ndarray:
     """States (q_s, q_s') of the steady motion at times `clock` since a strobe, shape (..., 2, n_modes)."""
-    return np.stack(steady_motion(motion, clock), axis=-2)
+    return np.stack(steady_motion(numbers, clock), axis=-2)
 
 
-def deviations(motion: Motion, time: float, q: np.ndarray, q_rate: np.ndarray) -> np.ndarray:
+def deviations(numbers: Numbers, time: float, q: np.ndarray, q_rate: np.ndarray) -> np.ndarray:
     """Deviations (u, v) of the modal state (q, q') from the steady motion at a time, shape (2, n_modes)."""
-    return np.array([q, q_rate]) - steady_states(motion, math.fmod(time, motion.period))
+    return np.array([q, q_rate]) - steady_states(numbers, math.fmod(time, numbers.period))

@@ -46,7 +46,7 @@ class ContactLaw:
     Attributes
     ----------
     code : int
-        The number by which ``contact.touch.TOUCHES`` finds the compiled part of the law.
+        The number by which ``contact.touch.LAWS`` finds the compiled part of the law.
     units : dict of str to str
         Names and units of the plain numbers of the law, two at most.  In a force law the first, its
         stiffness, is above zero and the other zero or more.

@@ -26,7 +26,7 @@ import numpy as np
 from beam import ModalModel
 from beam.parameters import InvalidValue, final, require, require_array, require_kind, require_within, shown
 from contact.drive import HarmonicDrive
-from contact.flight.motion import Motion, motion_of, stacked, with_drive
+from contact.flight.numbers import Numbers, numbers_of, stacked, with_drive
 from contact.laws import NewtonRestitution
 from contact.plausible import suspect_sizes
 from contact.stop import Stop, given_stops, rows_of
@@ -243,13 +243,13 @@ class ImpactOscillator:
         q, v = np.asarray(displacement), np.asarray(velocity)
         return 0.5 * np.sum(v**2 + (self.model.omega * q) ** 2, axis=-1)
 
-    def motion(self) -> Motion:
+    def numbers(self) -> Numbers:
         """The numbers of an oscillator with one stop at the tip, as the kernels take them; not to be written
         into.  ValueError is raised for several stops, or one elsewhere."""
         self.only_stop("this")
         return self._motion
 
-    def numbers(self) -> Motion:
+    def stacked(self) -> Numbers:
         """The numbers with all stops, as simulation takes them; not to be written into."""
         return self._motion
 
@@ -263,22 +263,22 @@ class ImpactOscillator:
         return self.stops[0]
 
     @cached_property
-    def _motion(self) -> Motion:
+    def _motion(self) -> Numbers:
         seen, drive = self._at_one_metre, self.drive
         views = seen if drive is None else [with_drive(one, drive.amplitude) for one in seen]
         return views[0] if len(views) == 1 else stacked(views, self.simultaneous == "sequential")
 
     @property
-    def _only_at_one_metre(self) -> Motion:
+    def _only_at_one_metre(self) -> Numbers:
         self.only_stop("this")
         return self._at_one_metre[0]
 
     @cached_property
-    def _at_one_metre(self) -> list[Motion]:
+    def _at_one_metre(self) -> list[Numbers]:
         """The numbers that each stop sees at an amplitude of 1 m; oscillators that `with_amplitude` has made
         share them."""
         return [
-            motion_of(
+            numbers_of(
                 self.model.omega,
                 self.model.decay_rate,
                 row,

@@ -7,26 +7,14 @@ contact, the contact series for Hertz's and Hunt and Crossley's laws.  Its error
 
 import numpy as np
 
-from beam.parameters import (
-    InvalidType,
-    InvalidValue,
-    require,
-    require_array,
-    require_kind,
-    require_whole,
-    require_within,
-    shown,
-    suspect,
-)
-from contact.drive import split_time
+from beam.parameters import InvalidType, require, require_kind, suspect
+from contact.engine.plan import plan_of
 from contact.flight.modal_flow import steady_motion
-from contact.flight.motion import LOAD
-from contact.integrators import INTEGRATORS, Exact, Integrator, Run
+from contact.flight.numbers import LOAD
+from contact.integrators import INTEGRATORS, Exact, Integrator
 from contact.integrators.method import LAW_NAMES
 from contact.oscillator import ImpactOscillator
 from contact.trajectory import State, Trajectory
-
-MOST_STORED = 2.0**28  # largest number of values in the strobes of one run: 2 GB
 
 
 def _method(method: Integrator | str | None, oscillator: ImpactOscillator) -> Integrator:
@@ -65,60 +53,12 @@ def require_state(oscillator: ImpactOscillator, state: object) -> State:
 
 def _suspect_rest(oscillator: ImpactOscillator, start: State) -> None:
     """Warn of a driven spring that never moves."""
-    motion, still = oscillator.numbers(), not np.any(start.velocity)
-    still = still and not motion.row(LOAD).any()  # a load moves a mode of zero frequency
+    numbers, still = oscillator.stacked(), not np.any(start.velocity)
+    still = still and not numbers.row(LOAD).any()  # a load moves a mode of zero frequency
     idle = oscillator.drive is not None and oscillator.drive.amplitude == 0.0
-    if idle and still and np.all(start.displacement == steady_motion(motion, 0.0)[0]):
+    if idle and still and np.all(start.displacement == steady_motion(numbers, 0.0)[0]):
         words = "`with_excess` gives the same oscillator with one"
         suspect(f"amplitude of the drive is 0 m and the spring starts at rest: nothing moves; {words}")
-
-
-def _run(
-    oscillator: ImpactOscillator,
-    start: State,
-    duration: float | None,
-    periods: int | None,
-    times: np.ndarray | None,
-) -> Run:
-    """The run from `start` over one of `duration` and `periods`, checked."""
-    words = "duration and periods are both given or both missing; give exactly one of them"
-    require((duration is None) != (periods is None), words)
-    period = oscillator.period
-    whole = 0 if periods is None else require_whole("periods", periods, "drive periods")
-    length = whole * period if whole else require_within("duration", duration, "s", above=0)
-    if length / period * 2 * oscillator.n_modes > MOST_STORED:
-        raise InvalidValue(
-            f"duration is {length:g} s, {length / period:g} drive periods with {oscillator.n_modes} modes; "
-            f"the strobes kept must stay below {MOST_STORED:g} numbers, so run it in pieces"
-        )
-    first, clock = (x.item() for x in split_time(start.time, period))
-    last, clock_end = first + whole, clock
-    if not whole:
-        last, clock_end = (x.item() for x in split_time(start.time + length, period))
-    words = "a rising array"
-    wanted = require_array("times", () if times is None else times, "s", dimensions=1, words=words)
-    if np.any(np.diff(wanted) < 0.0):  # the sentence is slow to make
-        raise InvalidValue(f"times is {shown(wanted.tolist())} s; it must be {words}")
-    begin, end, beside = start.time, start.time + length, 1e-12 * length
-    if wanted.size and (wanted[0] < begin - beside or wanted[-1] > end + beside):
-        words = f"they must lie within {begin} to {end} s"
-        raise InvalidValue(f"times run from {wanted[0]} to {wanted[-1]} s; {words}")
-    sample_period, sample_clock = split_time(wanted, period)
-    late = (sample_period > last) | ((sample_period == last) & (sample_clock > clock_end))
-    sample_period[late], sample_clock[late] = last, clock_end
-    early = (sample_period < first) | ((sample_period == first) & (sample_clock < clock))
-    sample_period[early], sample_clock[early] = first, clock
-    return Run(
-        start=start,
-        length=length,
-        first=first,
-        last=last,
-        clock=clock,
-        clock_end=clock_end,
-        times=wanted,
-        sample_period=sample_period,
-        sample_clock=sample_clock,
-    )
 
 
 def simulate(
@@ -164,6 +104,6 @@ def simulate(
     require_kind("oscillator", oscillator, ImpactOscillator, "an ImpactOscillator")
     chosen = _method(method, oscillator)
     start = State.rest(oscillator.n_modes) if state is None else require_state(oscillator, state)
-    run = _run(oscillator, start, duration, periods, times)
+    plan = plan_of(oscillator, start, duration, periods, times)
     _suspect_rest(oscillator, start)
-    return chosen.follow(oscillator, run)
+    return chosen.follow(oscillator, plan)

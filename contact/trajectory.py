@@ -123,21 +123,6 @@ class State:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Run:
-    """Start and end of a simulation, and the times at which its states are wanted."""
-
-    start: State
-    length: float  # duration [s]
-    first: int  # number of the drive period in which the run starts
-    last: int  # number of the one in which it ends
-    clock: float  # start and end, as times since the strobes of these periods [s]
-    clock_end: float
-    times: np.ndarray  # at which the state is wanted [s], shape (n_times,)
-    sample_period: np.ndarray  # the same as number of the drive period and time since its strobe [s]
-    sample_clock: np.ndarray
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
 class Trajectory:
     """A motion of an `oscillator`: strobed states, sampled states, every impact, and the state at the `end`.
 
@@ -180,7 +165,7 @@ class Trajectory:
         arrays = {name: getattr(self, name) for name in _ARRAYS}
         arrays |= {f"impacts_{name}": getattr(self.impacts, name) for name in _COLUMNS}
         arrays |= {f"end_{name}": np.asarray(getattr(self.end, name)) for name in _STATE}
-        np.savez_compressed(path, numbers=_fingerprint(self.oscillator), **arrays)
+        np.savez_compressed(path, values=_fingerprint(self.oscillator), **arrays)
 
     @staticmethod
     def load(path: str | Path, oscillator: ImpactOscillator) -> Trajectory:
@@ -196,12 +181,12 @@ class Trajectory:
             same = np.array_equal(file["numbers"], _fingerprint(oscillator))
             require(same, "oscillator", f"has other numbers than the one that moved in {shown(str(path))}")
             end = {name: file[f"end_{name}"] for name in _STATE}
-            numbers = {name: value if value.ndim else value.item() for name, value in end.items()}
-            numbers["regime"] = tuple(end["regime"].tolist()) if end["regime"].ndim else numbers["regime"]
+            values = {name: value if value.ndim else value.item() for name, value in end.items()}
+            values["regime"] = tuple(end["regime"].tolist()) if end["regime"].ndim else values["regime"]
             columns = {name: file[f"impacts_{name}"] for name in _COLUMNS}
             arrays = {name: file[name] if file[name].ndim else file[name].item() for name in _ARRAYS}
         impacts = Impacts(oscillator=oscillator, **columns)
-        return Trajectory(oscillator=oscillator, end=State(**numbers), impacts=impacts, **arrays)
+        return Trajectory(oscillator=oscillator, end=State(**values), impacts=impacts, **arrays)
 
 
 _ARRAYS, _COLUMNS, _STATE = (
@@ -213,4 +198,4 @@ _ARRAYS, _COLUMNS, _STATE = (
 
 def _fingerprint(oscillator: ImpactOscillator) -> np.ndarray:
     """All numbers of an oscillator in one row."""
-    return np.concatenate([np.ravel(part) for part in oscillator.numbers()]).astype(float)
+    return np.concatenate([np.ravel(part) for part in oscillator.stacked()]).astype(float)

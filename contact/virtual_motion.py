@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 
-from contact.flight.motion import WEIGHT, Motion
+from contact.flight.numbers import WEIGHT, Numbers
 from contact.flight.tip_search import peaks_of_flight, tip_at
 
 NEAR = 0.6  # drive periods within which the hump of a virtual motion belongs to a collision
@@ -16,29 +16,29 @@ NEAR = 0.6  # drive periods within which the hump of a virtual motion belongs to
 class VirtualMotion:
     """The virtual motion through the mode-1 deviation (u, v) at `clock` after a strobe.
 
-    Times s count from there; `motion` has mode 1 only.
+    Times s count from there; `numbers` has mode 1 only.
     """
 
-    def __init__(self, motion: Motion, clock: float, u: float, v: float) -> None:
-        self.motion, self.clock = motion, clock
+    def __init__(self, numbers: Numbers, clock: float, u: float, v: float) -> None:
+        self.numbers, self.clock = numbers, clock
         self.u, self.v = np.array([u]), np.array([v])
 
     def at(self, s: float) -> tuple[float, float, float]:
         """Height over the gap [m], velocity and acceleration."""
-        found: tuple[float, float, float] = tip_at(self.motion, self.clock, self.u, self.v, s)
+        found: tuple[float, float, float] = tip_at(self.numbers, self.clock, self.u, self.v, s)
         return found
 
     def extrema(self, low: float, high: float, sign: float) -> list[float]:
         """Times in [low, high] where the velocity goes through zero from `sign` to -`sign`."""
-        motion, modes = self.motion, self.motion.modes.copy()
+        numbers, modes = self.numbers, self.numbers.modes.copy()
         modes[WEIGHT] *= sign  # the valleys of a motion are the peaks of the motion upside down
-        sine, cosine = sign * motion.tip_sine, sign * motion.tip_cosine
-        signed = motion._replace(modes=modes, tip_sine=sine, tip_cosine=cosine)
+        sine, cosine = sign * numbers.tip_sine, sign * numbers.tip_cosine
+        signed = numbers._replace(modes=modes, tip_sine=sine, tip_cosine=cosine)
         return peaks_of_flight(signed, self.clock, self.u, self.v, (low, high), True).tolist()
 
     def peak_near(self, s: float) -> float:
         """Time of the peak next to `s`; NaN if there is none within `NEAR` periods."""
-        peaks = self.extrema(s - NEAR * self.motion.period, s + NEAR * self.motion.period, 1.0)
+        peaks = self.extrema(s - NEAR * self.numbers.period, s + NEAR * self.numbers.period, 1.0)
         return min(peaks, key=lambda peak: abs(peak - s), default=math.nan)
 
     def crossing(self, peak: float, direction: float) -> float:
@@ -48,7 +48,7 @@ class VirtualMotion:
         """
         from scipy.optimize import brentq  # slow to import
 
-        near, far = peak, peak + direction * self.motion.period
+        near, far = peak, peak + direction * self.numbers.period
         if self.at(peak)[0] <= 0.0:
             return peak
         for low in [*self.extrema(min(near, far), max(near, far), -1.0)[:: int(direction)], far]:

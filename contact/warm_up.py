@@ -31,7 +31,7 @@ def _motions() -> None:
 
 
 def _orbits() -> None:
-    Shooting(oscillator=_oscillator(HertzContact(stiffness=1e9)), period=5).at_speed(0.1)
+    Shooting(oscillator=_oscillator(HertzContact(stiffness=1e9)), m=5).at_speed(0.1)
 
 
 if __name__ == "__main__":

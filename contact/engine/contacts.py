@@ -11,7 +11,7 @@ from types import SimpleNamespace
 from contact import touch
 from contact.engine.recorder import put_sample, sample_due, strobe
 from contact.flight.elementary import EPS
-from contact.flight.motion import NUMBERS, STACKED, TIME_SCALE, WEIGHT
+from contact.flight.numbers import NUMBERS, STACKED, TIME_SCALE, WEIGHT
 from contact.flight.polynomial_root import first_polynomial_root
 from contact.machine.compiled import kernel, part
 from contact.touch.passage import AT_END, RELEASED, SECOND, TOO_MANY, add_exchange, follower, put_state
@@ -28,12 +28,12 @@ frequencies; with twelve modes they take half a second."""
 
 
 @kernel
-def sample_touch(motion, run, s, until, series, space, recorder):
+def sample_touch(numbers, run, s, until, series, space, recorder):
     """Write states at the sample times of a contact step up to `s`, at the clock `until` [s]."""
-    while sample_due(recorder, run.period, until):
+    while sample_due(recorder, run.stretch, until):
         time = recorder.sample_clock[recorder.marks[0].sampled] - run.clock
-        at = touch.series_variable(motion, time, s, series)
-        touch.state(motion, run, at, series, space.u, space.v)
+        at = touch.series_variable(numbers, time, s, series)
+        touch.state(numbers, run, at, series, space.u, space.v)
         put_sample(recorder, space.u, space.v)
 
 
@@ -42,25 +42,29 @@ def rest_of_hops(run, stop, until, recorder):
     """How far a step up to the clock `until` [s] lies in the hops before a stay at a stop, whose row is open
     [s]."""
     row = recorder.log[recorder.marks[stop].row]
-    if row.kind != STAY or row.period < run.period or (row.period == run.period and row.start <= run.clock):
+    if (
+        row.kind != STAY
+        or row.stretch < run.stretch
+        or (row.stretch == run.stretch and row.start <= run.clock)
+    ):
         return 0.0
-    return until - run.clock if row.period > run.period else min(row.start, until) - run.clock
+    return until - run.clock if row.stretch > run.stretch else min(row.start, until) - run.clock
 
 
 def reached(law: SimpleNamespace) -> Callable[..., tuple[float, float]]:
     """Where a step of a contact first reaches another stop; within rounding counts as a touch."""
     height_over, series_variable = law.height_over, law.series_variable
 
-    def reaches(motion, run, u, v, s, length, series, space):
+    def reaches(numbers, run, u, v, s, length, series, space):
         """The variable of the series and the time [s] at which a step touches another stop; both are negative
         if it touches none.  The step leads from (u, v) to `s` and lasts `length` [s]."""
         stops, out, first = space.stops, space.height, -1.0
         for j in range(stops.shape[0] // STACKED):
             weight, own = stops[STACKED * j + WEIGHT], stops[STACKED * j + NUMBERS]
-            order = 0 if j == run.stop else height_over(motion, run, weight, own, series, out)
+            order = 0 if j == run.stop else height_over(numbers, run, weight, own, series, out)
             size, away, reach = abs(own[0]) + own[3] + own[4], 0.0, 1.0
             for k in range(u.size):
-                size += abs(weight[k]) * (abs(u[k]) + abs(v[k]) * motion.modes[TIME_SCALE, k])
+                size += abs(weight[k]) * (abs(u[k]) + abs(v[k]) * numbers.modes[TIME_SCALE, k])
             for n in range(1, order + 1):
                 reach *= s
                 away += abs(out[n]) * reach
@@ -73,7 +77,7 @@ def reached(law: SimpleNamespace) -> Callable[..., tuple[float, float]]:
         low, high = (-1.0, -1.0) if first < 0.0 else (0.0, length)
         for _ in range(60):
             middle = 0.5 * (low + high)
-            if series_variable(motion, middle, s, series) < first:
+            if series_variable(numbers, middle, s, series) < first:
                 low = middle
             else:
                 high = middle
@@ -86,23 +90,23 @@ def recorded(law: SimpleNamespace) -> Callable[..., bool]:
     """The `Watch` of the event loop: samples are taken, what the tip gives to the stop is written."""
     exchange, state, reaches = law.exchange, law.state, reached(law)
 
-    def watch(motion, run, u, v, s, until, series, watcher):
+    def watch(numbers, run, u, v, s, until, series, watcher):
         space, recorder = watcher
         if space.stops.shape[0] > STACKED:
-            first, time = reaches(motion, run, u, v, s, until - run.clock, series, space)
+            first, time = reaches(numbers, run, u, v, s, until - run.clock, series, space)
             if first >= 0.0:
-                state(motion, run, first, series, u, v)
+                state(numbers, run, first, series, u, v)
                 run.clock += time
                 return True
-        if sample_due(recorder, run.period, until):
-            sample_touch(motion, run, s, until, series, space, recorder)
+        if sample_due(recorder, run.stretch, until):
+            sample_touch(numbers, run, s, until, series, space, recorder)
         if recorder.log.size > 0:
             last, hops = recorder.marks[run.stop].row, rest_of_hops(run, run.stop, until, recorder)
             if hops > 0.0:
-                state(motion, run, hops, series, space.u, space.v)
+                state(numbers, run, hops, series, space.u, space.v)
                 put_state(recorder.log_state[last], 0, space.u, space.v)
             known = recorder.log[last].peak_force
-            work, impulse, force = exchange(motion, run, (hops, s), series, known)
+            work, impulse, force = exchange(numbers, run, (hops, s), series, known)
             add_exchange(recorder, run.stop, work, impulse, force)
         return False
 
@@ -113,23 +117,23 @@ follow = follower(recorded)
 
 
 @part
-def follow_contact(motion, u, v, run, last, clock_end, space, recorder):
+def follow_contact(numbers, u, v, run, last, clock_end, space, recorder):
     """Follow a contact to its release or the end of the run; returns the status."""
     status, series = GOING, space.series
     if space.stops.shape[0] > STACKED:
-        order, columns = touch.series_size(motion)
+        order, columns = touch.series_size(numbers)
         series = fitted(series, order, columns)
     while status == GOING:
-        at_last = run.period == last
-        end = clock_end if at_last else motion.period
-        left = follow(motion, u, v, run, end, MOST_STEPS, recorder, series, (space, recorder))
+        at_last = run.stretch == last
+        end = clock_end if at_last else numbers.period
+        left = follow(numbers, u, v, run, end, MOST_STEPS, recorder, series, (space, recorder))
         if left == RELEASED:
             return GOING
         if left == SECOND:
             return FAILED_SECOND
         if left != AT_END:
             return FAILED_STEPS if left == TOO_MANY else FAILED_SERIES
-        while sample_due(recorder, run.period, end):  # samples closer to the end than any step
+        while sample_due(recorder, run.stretch, end):  # samples closer to the end than any step
             put_sample(recorder, u, v)
         run.clock, status = end, DONE if at_last else GOING
         if not at_last:

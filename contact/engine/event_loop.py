@@ -41,7 +41,7 @@ from contact.flight.modal_flow import (
     new_flight,
     propagate_flight,
 )
-from contact.flight.motion import seen_from, stops_of
+from contact.flight.numbers import seen_from, stops_of
 from contact.flight.sampled_crossing import first_sampled_crossing
 from contact.machine.compiled import borrowed, held, kernel, part
 from contact.touch import time_series
@@ -67,31 +67,31 @@ class Workspace(NamedTuple):
 
 
 @part
-def new_workspace(motion):
+def new_workspace(numbers):
     """Workspace for a run of an oscillator."""
-    order, columns, several = 0, 0, stops_of(motion) > 1
+    order, columns, several = 0, 0, stops_of(numbers) > 1
     if several:
-        order, columns = time_series.ORDER, motion.modes.shape[1]
-    for j in range(stops_of(motion)):
-        own = touch.series_size(seen_from(motion, j) if several else motion)
+        order, columns = time_series.ORDER, numbers.modes.shape[1]
+    for j in range(stops_of(numbers)):
+        own = touch.series_size(seen_from(numbers, j) if several else numbers)
         order, columns = max(order, own[0]), max(columns, own[1])
     return Workspace(
-        new_flight(motion),
-        flow_over(motion, motion.period),
+        new_flight(numbers),
+        flow_over(numbers, numbers.period),
         new_series(order, columns),
-        np.empty(motion.size),
-        np.empty(motion.size),
-        motion.modes,
+        np.empty(numbers.size),
+        np.empty(numbers.size),
+        numbers.modes,
         np.empty(order + 1),
     )
 
 
 @kernel
-def earliest_touch(motion, flight, base, duration, run, states):
+def earliest_touch(numbers, flight, base, duration, run, states):
     """The first touch of any of several stops: outcome and time as of ``searched_flight``, and its stop."""
     outcome, s, stop = FREE, duration, run.stop
-    for j in range(stops_of(motion)):
-        found, at = searched_flight(seen_from(motion, j), flight, base, s, states[j].contact_order)
+    for j in range(stops_of(numbers)):
+        found, at = searched_flight(seen_from(numbers, j), flight, base, s, states[j].contact_order)
         if found != FREE:
             outcome, s, stop = found, at, j
     for j in range(states.size):
@@ -100,7 +100,7 @@ def earliest_touch(motion, flight, base, duration, run, states):
 
 
 @part
-def follow_flights(motion, u, v, run, run_end, space, recorder, samples, sets):
+def follow_flights(numbers, u, v, run, run_end, space, recorder, samples, sets):
     """Follow flights from strobe to strobe, to the next touch or the end of the run; returns the status.
 
     `run_end` is the number of the period of the end, and its clock.
@@ -109,28 +109,28 @@ def follow_flights(motion, u, v, run, run_end, space, recorder, samples, sets):
     flight, whole, marks = space.flight, space.whole, recorder.marks[0]
     strobes, counts, status = recorder.strobes, recorder.counts, GOING
     while status == GOING:
-        base, at_last = run.clock, run.period == last
-        end = clock_end if at_last else motion.period
+        base, at_last = run.clock, run.stretch == last
+        end = clock_end if at_last else numbers.period
         if base < end:
             load_state(flight, u, v)
             count, order = 0, run.contact_order
             if sets is not None:
-                outcome, s, run.stop = earliest_touch(motion, flight, base, end - base, run, sets.states)
+                outcome, s, run.stop = earliest_touch(numbers, flight, base, end - base, run, sets.states)
             elif samples is None:
-                outcome, s = searched_flight(motion, flight, base, end - base, order)
+                outcome, s = searched_flight(numbers, flight, base, end - base, order)
             else:
-                outcome, s, count = first_sampled_crossing(motion, flight, base, end - base, order, samples)
+                outcome, s, count = first_sampled_crossing(numbers, flight, base, end - base, order, samples)
             run.evaluations += count + 1
             run.steps += 1
             until = end if outcome == FREE else base + s
-            if outcome != UNRESOLVED and sample_due(recorder, run.period, until):
-                sample_flight(motion, run, until, space, recorder)
+            if outcome != UNRESOLVED and sample_due(recorder, run.stretch, until):
+                sample_flight(numbers, run, until, space, recorder)
             if outcome == FREE and base == 0.0 and not at_last:
                 apply_flow(whole, u, v)
-                if run.period % LOOK == 0:
+                if run.stretch % LOOK == 0:
                     clear_faint(u, v)
             else:
-                propagate_flight(motion, flight, s, u, v)
+                propagate_flight(numbers, flight, s, u, v)
             run.clock = until
             if outcome == UNRESOLVED:
                 status = FAILED_CROSSING
@@ -145,7 +145,7 @@ def follow_flights(motion, u, v, run, run_end, space, recorder, samples, sets):
 
 
 @kernel
-def advance(motion, u, v, runs, last, clock_end, recorder, samples, sets=None):
+def advance(numbers, u, v, runs, last, clock_end, recorder, samples, sets=None):
     """Carry the deviations (u, v), shape (n_modes,) each, to the time `clock_end` [s] after strobe `last`.
 
     They and `runs`, a record array of ``contact.touch.passage.STATE`` of shape (1,), are overwritten.
@@ -154,15 +154,15 @@ def advance(motion, u, v, runs, last, clock_end, recorder, samples, sets=None):
     looked for at samples, with None they are proved.  Returns the status: DONE, LOG_FULL (call again with a
     longer log), or one of the failures.
     """
-    run, workspace = runs[0], new_workspace(motion)
-    motion, u, v, recorder = borrowed(motion), borrowed(u), borrowed(v), borrowed(recorder)
+    run, workspace = runs[0], new_workspace(numbers)
+    numbers, u, v, recorder = borrowed(numbers), borrowed(u), borrowed(v), borrowed(recorder)
     space = borrowed(workspace)
     status, rows = GOING, 2
     if sets is not None:
         rows = 2 * sets.states.size
         if run.contact_order > 0:
             run.contact_order, sets.event[:] = 0, 0
-            status = instant(motion, run, u, v, sets, recorder)
+            status = instant(numbers, run, u, v, sets, recorder)
     while status < DONE:
         if is_full(recorder, rows):
             status = LOG_FULL
@@ -171,15 +171,15 @@ def advance(motion, u, v, runs, last, clock_end, recorder, samples, sets=None):
         elif run.steps > MOST_STEPS:
             status = FAILED_STEPS
         elif run.regime == OUTSIDE:
-            status = follow_flights(motion, u, v, run, (last, clock_end), space, recorder, samples, sets)
+            status = follow_flights(numbers, u, v, run, (last, clock_end), space, recorder, samples, sets)
         elif sets is None:
-            status = follow_contact(motion, u, v, run, last, clock_end, space, recorder)
+            status = follow_contact(numbers, u, v, run, last, clock_end, space, recorder)
         else:
-            status = follow_several(motion, u, v, run, last, clock_end, space, recorder, sets)
+            status = follow_several(numbers, u, v, run, last, clock_end, space, recorder, sets)
         if status == CROSSED or status == GRAZED:
             if sets is None:
-                meet(motion, run, u, v, status == CROSSED, recorder)
+                meet(numbers, run, u, v, status == CROSSED, recorder)
             else:
-                status = meet_several(motion, run, u, v, status == CROSSED, recorder, sets)
+                status = meet_several(numbers, run, u, v, status == CROSSED, recorder, sets)
     held(workspace)
     return status

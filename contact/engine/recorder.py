@@ -8,13 +8,14 @@ from typing import NamedTuple
 
 import numpy as np
 
+from contact.engine.plan import Plan
 from contact.errors import ContactError
 from contact.flight.modal_flow import propagate_flight, steady_motion
 from contact.impacts import Impacts, steady_states
 from contact.machine.compiled import inlined, kernel, part
 from contact.oscillator import ImpactOscillator
 from contact.touch.passage import MARKS, TOUCH, new_touches, put_state
-from contact.trajectory import STAY, Run, State, Trajectory
+from contact.trajectory import STAY, State, Trajectory
 
 COPIED = "approach", "rebound", "loss", "impulse", "peak_force", "kind", "stop"  # columns of the log
 
@@ -27,7 +28,7 @@ class Recorder(NamedTuple):
     log_state: np.ndarray
     strobes: np.ndarray  # (u, v) at the strobes, shape (n_strobes, 2 n_modes) or (0, 2 n_modes)
     counts: np.ndarray  # impacts since the strobe before, shape (n_strobes,) or (0,)
-    sample_period: np.ndarray  # times wanted: drive period and time since its strobe [s], shape (n,)
+    sample_stretch: np.ndarray  # times wanted, as stretches and clocks [s], shape (n,)
     sample_clock: np.ndarray
     samples: np.ndarray  # (u, v) at these times, shape (n, 2 n_modes)
 
@@ -49,11 +50,11 @@ def strobes_only(strobes, counts):
 
 
 @part
-def sample_due(recorder, period, until):
-    """Whether the next sample lies in this period, at or before the clock `until`."""
+def sample_due(recorder, stretch, until):
+    """Whether the next sample lies in this stretch, at or before the clock `until`."""
     i = recorder.marks[0].sampled
     clock = recorder.sample_clock
-    return i < clock.size and recorder.sample_period[i] == period and clock[i] <= until
+    return i < clock.size and recorder.sample_stretch[i] == stretch and clock[i] <= until
 
 
 @part
@@ -65,11 +66,11 @@ def put_sample(recorder, u, v):
 
 
 @kernel
-def sample_flight(motion, run, until, space, recorder):
+def sample_flight(numbers, run, until, space, recorder):
     """Write states at the sample times of a flight up to `until` [s]."""
-    while sample_due(recorder, run.period, until):
+    while sample_due(recorder, run.stretch, until):
         time = recorder.sample_clock[recorder.marks[0].sampled] - run.clock
-        propagate_flight(motion, space.flight, time, space.u, space.v)
+        propagate_flight(numbers, space.flight, time, space.u, space.v)
         put_sample(recorder, space.u, space.v)
 
 
@@ -80,7 +81,7 @@ def strobe(run, marks, strobes, counts, u, v):
     It takes no recorder, since each array in a tuple costs some nanoseconds a call.
     """
     run.clock, run.steps = 0.0, 0
-    run.period += 1
+    run.stretch += 1
     if counts.size > 0:
         counts[marks.strobed] = marks.impacts
     if strobes.shape[0] > 0:
@@ -89,15 +90,15 @@ def strobe(run, marks, strobes, counts, u, v):
     marks.impacts = 0
 
 
-def recorder_for(run: Run, n_modes: int, stops: int = 1) -> Recorder:
-    """An empty recorder for the strobes and times of `run`, and a number of stops."""
-    strobes, times = run.last - run.first, run.times.size
+def recorder_for(plan: Plan, n_modes: int, stops: int = 1) -> Recorder:
+    """An empty recorder for the strobes and times of `plan`, and a number of stops."""
+    strobes, times = plan.last - plan.first, plan.times.size
     return Recorder(
         *new_touches(64, n_modes, stops),  # the log grows by itself
         strobes=np.empty((strobes, 2 * n_modes)),
         counts=np.zeros(strobes, dtype=np.int64),
-        sample_period=np.asarray(run.sample_period, dtype=np.int64),
-        sample_clock=run.sample_clock,
+        sample_stretch=np.asarray(plan.sample_stretch, dtype=np.int64),
+        sample_clock=plan.sample_clock,
         samples=np.empty((times, 2 * n_modes)),
     )
 
@@ -112,7 +113,7 @@ def grown(recorder: Recorder) -> Recorder:
 
 def trajectory_of(
     recorder: Recorder,
-    run: Run,
+    plan: Plan,
     end: State,
     oscillator: ImpactOscillator,
     *,
@@ -124,34 +125,34 @@ def trajectory_of(
     Samples at the end of the run that were not written get the state `end`.  `deviations` tells whether the
     record holds deviations from the steady motion, or else modal states.
     """
-    n, marks, period, motion = oscillator.n_modes, recorder.marks[0], oscillator.period, oscillator.numbers()
+    n, marks, period, numbers = oscillator.n_modes, recorder.marks[0], oscillator.period, oscillator.stacked()
     left = slice(int(marks["sampled"]), None)
-    if np.any((recorder.sample_period[left] < run.last) | (recorder.sample_clock[left] < run.clock_end)):
+    if np.any((recorder.sample_stretch[left] < plan.last) | (recorder.sample_clock[left] < plan.clock_end)):
         place = {"time": end.time, "gap": -float(oscillator.heights(end.displacement)[0])}
         place["velocity"] = float(oscillator.tip(end.velocity))
         raise ContactError(**place, detail="the state at one of the times was not written down")
-    logged, passed = int(marks["logged"]), run.last - run.first
+    logged, passed = int(marks["logged"]), plan.last - plan.first
     log, touches = recorder.log[:logged].copy(), recorder.log_state[:logged].reshape(logged, 2, 2, n).copy()
     rows = np.concatenate((recorder.strobes, recorder.samples))
     q, v = rows[:, :n].copy(), rows[:, n:].copy()
     if deviations:
-        steady, rate = steady_motion(motion, np.concatenate((np.zeros(passed), run.sample_clock)))
+        steady, rate = steady_motion(numbers, np.concatenate((np.zeros(passed), plan.sample_clock)))
         q, v = q + steady, v + rate
     else:
-        touches -= steady_states(motion, np.fmod(np.column_stack((log["start"], log["end"])), period))
+        touches -= steady_states(numbers, np.fmod(np.column_stack((log["start"], log["end"])), period))
     q[passed:][left], v[passed:][left] = end.displacement, end.velocity
     # a stay whose hops the release or the end of the run cuts short
-    opened, last = np.isnan(log["end"]), np.where(np.isnan(log["end"]), run.last, log["end_period"])
-    until = (last - log["period"]) * period + np.where(opened, run.clock_end, log["end"])
+    opened, last = np.isnan(log["end"]), np.where(np.isnan(log["end"]), plan.last, log["end_stretch"])
+    until = (last - log["stretch"]) * period + np.where(opened, plan.clock_end, log["end"])
     late = (log["kind"] == STAY) & (log["start"] > until)
     log["start"][late] = until[late]
     # a method with a step counts from one strobe throughout
-    number = log["period"] + np.floor(log["start"] / period).astype(np.int64)
+    number = log["stretch"] + np.floor(log["start"] / period).astype(np.int64)
     impacts = Impacts(
         oscillator=oscillator,
-        period=number,
-        clock=(log["period"] - number) * period + log["start"],
-        end_clock=(log["end_period"] - number) * period + log["end"],
+        stretch=number,
+        clock=(log["stretch"] - number) * period + log["start"],
+        end_clock=(log["end_stretch"] - number) * period + log["end"],
         **{name: log[name].copy() for name in COPIED},
         together=log["together"] == 1,
         deviations_start=touches[:, 0],
@@ -160,11 +161,11 @@ def trajectory_of(
     return Trajectory(
         oscillator=oscillator,
         end=end,
-        strobe_time=np.arange(run.first + 1, run.last + 1) * period,
+        strobe_time=np.arange(plan.first + 1, plan.last + 1) * period,
         strobe_displacement=q[:passed],
         strobe_velocity=v[:passed],
         strobe_impacts=recorder.counts,
-        time=run.times,
+        time=plan.times,
         displacement=q[passed:],
         velocity=v[passed:],
         impacts=impacts,

@@ -15,7 +15,7 @@ from contact.engine.contacts import (
 )
 from contact.engine.recorder import put_sample, sample_due, strobe
 from contact.engine.together import instant
-from contact.flight.motion import seen_from
+from contact.flight.numbers import seen_from
 from contact.machine.compiled import kernel, part
 from contact.touch import time_series
 from contact.touch.exchange import UNIFORM, exchange_of
@@ -26,14 +26,14 @@ from contact.trajectory import CONTACT, INSIDE, OUTSIDE, SUSTAINED
 
 
 @kernel
-def exchange_together(motion, run, stops, s, until, series, sets, space, recorder):
+def exchange_together(numbers, run, stops, s, until, series, sets, space, recorder):
     """Write what the points give to the stops in a step up to `s`, at the clock `until` [s]."""
     rates = series.scalars[time_series.RATE]
     for j in range(stops.size):
         if stops[j].regime == CONTACT or stops[j].regime == SUSTAINED:
             row, hops = recorder.marks[j].row, rest_of_hops(run, j, until, recorder)
             if hops > 0.0:
-                time_series.state(motion, run, hops, series, space.u, space.v)
+                time_series.state(numbers, run, hops, series, space.u, space.v)
                 put_state(recorder.log_state[row], 0, space.u, space.v)
             for n in range(time_series.ORDER):
                 rates[n] = (n + 1.0) * sets.heights[j, n + 1]
@@ -46,16 +46,16 @@ def exchange_together(motion, run, stops, s, until, series, sets, space, recorde
 
 
 @part
-def follow_together(motion, u, v, run, last, clock_end, space, recorder, sets):
+def follow_together(numbers, u, v, run, last, clock_end, space, recorder, sets):
     """Follow closed contacts to the next instant or the end of the run; returns the status."""
     stops, whole = sets.states, space.series
-    whole = fitted(whole, time_series.ORDER, motion.modes.shape[1])
+    whole = fitted(whole, time_series.ORDER, numbers.modes.shape[1])
     series = Series(sets.rows, whole.sums, whole.scalars, whole.scaled, whole.places)
     while True:
-        at_last = run.period == last
-        end = clock_end if at_last else motion.period
-        while end - run.clock > CLOSEST * motion.period:
-            s = step(motion, run.clock, stops, u, v, end - run.clock, sets)
+        at_last = run.stretch == last
+        end = clock_end if at_last else numbers.period
+        while end - run.clock > CLOSEST * numbers.period:
+            s = step(numbers, run.clock, stops, u, v, end - run.clock, sets)
             run.evaluations += 1
             run.steps += 1
             if run.steps > MOST_STEPS:
@@ -63,24 +63,24 @@ def follow_together(motion, u, v, run, last, clock_end, space, recorder, sets):
             if not s >= 0.0:
                 return FAILED_SERIES
             until = run.clock + s if s < end - run.clock else end
-            while sample_due(recorder, run.period, until):
+            while sample_due(recorder, run.stretch, until):
                 time = recorder.sample_clock[recorder.marks[0].sampled] - run.clock
-                time_series.state(motion, run, time, series, space.u, space.v)
-                hold(motion, run.clock + time, stops, space.u, space.v, sets)
+                time_series.state(numbers, run, time, series, space.u, space.v)
+                hold(numbers, run.clock + time, stops, space.u, space.v, sets)
                 put_sample(recorder, space.u, space.v)
             if recorder.log.size > 0:
-                exchange_together(motion, run, stops, s, until, series, sets, space, recorder)
-            time_series.state(motion, run, s, series, u, v)
+                exchange_together(numbers, run, stops, s, until, series, sets, space, recorder)
+            time_series.state(numbers, run, s, series, u, v)
             run.clock = until
-            hold(motion, run.clock, stops, u, v, sets)
+            hold(numbers, run.clock, stops, u, v, sets)
             happens = 0
             for j in range(stops.size):
                 happens = max(happens, sets.event[j])
                 if stops[j].regime == OUTSIDE and s > 0.0:
                     stops[j].contact_order = 0
             if happens > 0:
-                return instant(motion, run, u, v, sets, recorder)
-        while sample_due(recorder, run.period, end):  # samples closer to the end than any step
+                return instant(numbers, run, u, v, sets, recorder)
+        while sample_due(recorder, run.stretch, end):  # samples closer to the end than any step
             put_sample(recorder, u, v)
         run.clock = end
         if at_last:
@@ -89,11 +89,11 @@ def follow_together(motion, u, v, run, last, clock_end, space, recorder, sets):
 
 
 @part
-def follow_several(motion, u, v, run, last, clock_end, space, recorder, sets):
+def follow_several(numbers, u, v, run, last, clock_end, space, recorder, sets):
     """Follow closed contacts, or one under a law that is followed alone; returns the status."""
-    seen, own = seen_from(motion, run.stop), sets.states[run.stop]
+    seen, own = seen_from(numbers, run.stop), sets.states[run.stop]
     if touch.joins(seen):
-        return follow_together(motion, u, v, run, last, clock_end, space, recorder, sets)
+        return follow_together(numbers, u, v, run, last, clock_end, space, recorder, sets)
     status = follow_contact(seen, u, v, run, last, clock_end, space, recorder)
     own.regime, own.contact_order, run.contact_order = run.regime, run.contact_order, 0
     return status

@@ -15,8 +15,9 @@ import numpy as np
 from contact import touch
 from contact.engine.contacts import FAILED_CHATTER, FAILED_SECOND, GOING
 from contact.flight.elementary import EPS
-from contact.flight.modal_flow import mode_acceleration, tip_rounding, tip_state
-from contact.flight.motion import NUMBERS, seen_from
+from contact.flight.modal_flow import mode_acceleration
+from contact.flight.numbers import NUMBERS, seen_from
+from contact.flight.tip import tip_rounding, tip_state
 from contact.laws import NEWTON
 from contact.machine.compiled import kernel, part
 from contact.touch.impulses import MOST, moreau, sequence
@@ -36,18 +37,18 @@ def rate_rounding(seen, u, v):
 
 
 @kernel
-def meet_ties(motion, run, stops, u, v, sets):
+def meet_ties(numbers, run, stops, u, v, sets):
     """Go on to the last of the instants at which stops are met, if rounding leaves their order open.
 
     A stop that is met slowly is met within its rounding bound over its velocity.
     """
     later = 0.0
     for j in range(stops.size):
-        slow = seen_from(motion, j)
+        slow = seen_from(numbers, j)
         if stops[j].regime == OUTSIDE and sets.event[j] == CHANGES:
             _height, rate, _pull = tip_state(slow, run.clock, u, v)
             for i in range(stops.size):
-                height, faster, _pull = tip_state(seen_from(motion, i), run.clock, u, v)
+                height, faster, _pull = tip_state(seen_from(numbers, i), run.clock, u, v)
                 late = -height / max(faster, rate)
                 if (
                     stops[i].regime == OUTSIDE
@@ -57,65 +58,65 @@ def meet_ties(motion, run, stops, u, v, sets):
                     later = max(later, late)
     if later > 0.0:
         for k in range(u.size):
-            pull = mode_acceleration(motion, k, u[k], v[k])
+            pull = mode_acceleration(numbers, k, u[k], v[k])
             u[k] += later * v[k]
             v[k] += later * pull
         run.clock += later
 
 
 @kernel
-def strike_together(motion, run, u, v, sets, recorder):
+def strike_together(numbers, run, u, v, sets, recorder):
     """The impulses at all of Newton's stops that are met, or hold their point at rest; returns the status.
 
     Stops that are then left have the event `HOPS`; where no velocity is left the regime is SUSTAINED.
     """
     stops = sets.states
-    members, numbers, count, hits = np.empty(stops.size, np.int64), np.empty((5, stops.size)), 0, 0
+    members, values, count, hits = np.empty(stops.size, np.int64), np.empty((5, stops.size)), 0, 0
     for j in range(stops.size):
-        seen, regime = seen_from(motion, j), stops[j].regime
+        seen, regime = seen_from(numbers, j), stops[j].regime
         if seen.law != NEWTON:
             continue
         height, rate, _pull = tip_state(seen, run.clock, u, v)
         near = abs(height) <= tip_rounding(seen, u, v) and rate > 0.0
         if regime == SUSTAINED or (regime == OUTSIDE and (near or sets.event[j] == CHANGES)):
             members[count] = j
-            numbers[SPEED, count] = max(rate, 0.0) if regime == OUTSIDE else 0.0
-            numbers[RESTITUTION, count] = restitution_at(seen, numbers[SPEED, count])[0]
+            values[SPEED, count] = max(rate, 0.0) if regime == OUTSIDE else 0.0
+            values[RESTITUTION, count] = restitution_at(seen, values[SPEED, count])[0]
             hits += 1 if regime == OUTSIDE else 0
             count += 1
     if hits == 0:
         return GOING
     if count > MOST:
         return FAILED_SECOND
-    answer = numbers[IMPULSE], numbers[AFTER], numbers[LOSS]
-    if motion.modes[NUMBERS + 1, 6] == 0.0:
-        moreau(sets.coupling, members, count, numbers[RESTITUTION], numbers[SPEED], answer)
-    elif not sequence(sets.coupling, members, count, numbers[RESTITUTION], numbers[SPEED], answer):
+    answer = values[IMPULSE], values[AFTER], values[LOSS]
+    if numbers.modes[NUMBERS + 1, 6] == 0.0:
+        moreau(sets.coupling, members, count, values[RESTITUTION], values[SPEED], answer)
+    elif not sequence(sets.coupling, members, count, values[RESTITUTION], values[SPEED], answer):
         return FAILED_CHATTER
     for p in range(count):
         if stops[members[p]].regime == OUTSIDE:
-            open_touch(recorder, members[p], run.period, run.clock, numbers[SPEED, p], IMPACT, u, v)
+            open_touch(recorder, members[p], run.stretch, run.clock, values[SPEED, p], IMPACT, u, v)
     for p in range(count):
-        push_back(motion.modes, members[p], numbers[IMPULSE, p], v)
+        push_back(numbers.modes, members[p], values[IMPULSE, p], v)
     for p in range(count):
-        j, after = members[p], numbers[AFTER, p]
-        add_exchange(recorder, j, numbers[LOSS, p], numbers[IMPULSE, p], math.nan)
+        j, after = members[p], values[AFTER, p]
+        add_exchange(recorder, j, values[LOSS, p], values[IMPULSE, p], math.nan)
         if stops[j].regime == OUTSIDE:
-            close_touch(recorder, j, run.period, run.clock, after, u, v)
+            close_touch(recorder, j, run.stretch, run.clock, after, u, v)
             if recorder.log.size > 0:
                 recorder.log[recorder.marks[j].row].together = 1 if count > 1 else 0
-        leaves = after < -rate_rounding(seen_from(motion, j), u, v)
+        leaves = after < -rate_rounding(seen_from(numbers, j), u, v)
         stops[j].regime, stops[j].contact_order = (OUTSIDE, 1) if leaves else (SUSTAINED, 0)
         sets.event[j] = HOPS if leaves else 0
     return GOING
 
 
 @kernel
-def change_contacts(motion, run, u, v, sets, recorder):
+def change_contacts(numbers, run, u, v, sets, recorder):
     """Begin and end the contacts with a force; returns the status."""
     stops = sets.states
     for j in range(stops.size):
-        seen, regime = seen_from(motion, j), stops[j].regime
+        seen, regime = seen_from(numbers, j), stops[j].regime
         if seen.law == NEWTON:
             continue
         height, rate, _pull = tip_state(seen, run.clock, u, v)
@@ -127,7 +128,7 @@ def change_contacts(motion, run, u, v, sets, recorder):
             elif rate > 0.0 and (near or sets.event[j] == CHANGES):
                 for i in range(stops.size):
                     if stops[i].regime != OUTSIDE and not (
-                        touch.joins(seen) and touch.joins(seen_from(motion, i))
+                        touch.joins(seen) and touch.joins(seen_from(numbers, i))
                     ):
                         run.stop = j
                         return FAILED_SECOND
@@ -144,37 +145,37 @@ def change_contacts(motion, run, u, v, sets, recorder):
                 own.regime = OUTSIDE
             if own.regime == OUTSIDE:
                 own.contact_order = 1
-                close_touch(recorder, j, run.period, run.clock, rate, u, v)
+                close_touch(recorder, j, run.stretch, run.clock, rate, u, v)
     return GOING
 
 
 @kernel
-def end_of_hops(motion, run, u, v, sets):
+def end_of_hops(numbers, run, u, v, sets):
     """Put points to rest whose hops are low; returns the velocities of all points over their stops [m/s]."""
     stops = sets.states
     rates, low, closed = np.zeros(stops.size), False, False
     for j in range(stops.size):
         closed = closed or stops[j].regime != OUTSIDE
     for j in range(stops.size):
-        seen = seen_from(motion, j)
+        seen = seen_from(numbers, j)
         _height, rates[j], pull = tip_state(seen, run.clock, u, v)
         if sets.event[j] == HOPS:
             speed = -rates[j]
             lowest = 1e3 * tip_rounding(seen, u, v) * pull / max(1.0 - seen.number0, EPS)
             if (closed or 0.5 * speed * speed <= lowest) and hops_end(
-                motion, run, stops, j, speed, u, v, sets
+                numbers, run, stops, j, speed, u, v, sets
             ):
                 sets.event[j], low = STAYS, True
     for j in range(stops.size):
         if sets.event[j] == STAYS:
             stops[j].regime, stops[j].contact_order = SUSTAINED, 0
     if low:
-        settle(motion, run.clock, stops, u, v, sets)
+        settle(numbers, run.clock, stops, u, v, sets)
     return rates
 
 
 @kernel
-def begin_stays(motion, run, speeds, u, v, sets, recorder):
+def begin_stays(numbers, run, speeds, u, v, sets, recorder):
     """Open the rows of rests that hops of these `speeds` lead to; NaN for the other stops."""
     stops, some = sets.states, False
     hops = np.zeros(stops.size)
@@ -182,45 +183,45 @@ def begin_stays(motion, run, speeds, u, v, sets, recorder):
         hops[j], some = (0.0, some) if math.isnan(speeds[j]) else (speeds[j], True)
     if not some:
         return
-    span, rate = hopping(motion, run.clock, stops, hops, u, v, sets)
-    given = sets.numbers[IMPULSE]
+    span, rate = hopping(numbers, run.clock, stops, hops, u, v, sets)
+    given = sets.values[IMPULSE]
     for j in range(stops.size):
         if not math.isnan(speeds[j]):
-            whole = span / max(1.0 - seen_from(motion, j).number0, EPS)
+            whole = span / max(1.0 - seen_from(numbers, j).number0, EPS)
             begins = whole * (1.0 - rate * whole)
-            begins = begins if whole <= motion.period and abs(rate * whole) < STEADY_PULL else 0.0
-            late = int((run.clock + begins) / motion.period)
+            begins = begins if whole <= numbers.period and abs(rate * whole) < STEADY_PULL else 0.0
+            late = int((run.clock + begins) / numbers.period)
             open_touch(
-                recorder, j, run.period + late, run.clock + begins - late * motion.period, 0.0, STAY, u, v
+                recorder, j, run.stretch + late, run.clock + begins - late * numbers.period, 0.0, STAY, u, v
             )
         if stops[j].regime == SUSTAINED:
             add_exchange(recorder, j, 0.5 * hops[j] * given[j], given[j], math.nan)
 
 
 @kernel
-def instant(motion, run, u, v, sets, recorder):
+def instant(numbers, run, u, v, sets, recorder):
     """What happens at an instant at which stops have an event, or are met; returns the status."""
     stops, before = sets.states, np.empty(sets.states.size, np.int64)
     for j in range(stops.size):
         before[j] = stops[j].regime
-    meet_ties(motion, run, stops, u, v, sets)
-    status = strike_together(motion, run, u, v, sets, recorder)
+    meet_ties(numbers, run, stops, u, v, sets)
+    status = strike_together(numbers, run, u, v, sets, recorder)
     if status == GOING:
-        status = change_contacts(motion, run, u, v, sets, recorder)
+        status = change_contacts(numbers, run, u, v, sets, recorder)
     if status != GOING:
         return status
-    settle(motion, run.clock, stops, u, v, sets)
-    rates = end_of_hops(motion, run, u, v, sets)
-    hold(motion, run.clock, stops, u, v, sets)
+    settle(numbers, run.clock, stops, u, v, sets)
+    rates = end_of_hops(numbers, run, u, v, sets)
+    hold(numbers, run.clock, stops, u, v, sets)
     for j in range(stops.size):
         stays = stops[j].regime == SUSTAINED
         if before[j] == SUSTAINED and not stays:
-            close_touch(recorder, j, run.period, run.clock, rates[j], u, v)
+            close_touch(recorder, j, run.stretch, run.clock, rates[j], u, v)
         elif stops[j].regime == OUTSIDE and stops[j].contact_order == 1 and rates[j] > 0.0:
             stops[j].contact_order = 0  # an impulse at another stop sends the point back at once
         rates[j] = max(-rates[j], 0.0) if stays and before[j] != SUSTAINED else math.nan
         sets.event[j] = 0
-    begin_stays(motion, run, rates, u, v, sets, recorder)
+    begin_stays(numbers, run, rates, u, v, sets, recorder)
     run.regime = OUTSIDE
     for j in range(stops.size - 1, -1, -1):
         if stops[j].regime != OUTSIDE:
@@ -229,7 +230,7 @@ def instant(motion, run, u, v, sets, recorder):
 
 
 @part
-def lone_impact(motion, seen, run, u, v, recorder, sets):
+def lone_impact(numbers, seen, run, u, v, recorder, sets):
     """The impact at a stop of Newton's law that is met alone, and left with more than low hops, while all are
     open.  This most frequent `instant` costs little; returns whether it was one."""
     height, rate, pull = tip_state(seen, run.clock, u, v)
@@ -242,29 +243,29 @@ def lone_impact(motion, seen, run, u, v, recorder, sets):
         return False
     for j in range(sets.states.size):
         if j != stop:
-            other = seen_from(motion, j)
+            other = seen_from(numbers, j)
             height, other_rate, pull = tip_state(other, run.clock, u, v)
             if other_rate > 0.0 and abs(height) <= tip_rounding(other, u, v) + other_rate * rounding / rate:
                 return False
-    open_touch(recorder, stop, run.period, run.clock, rate, IMPACT, u, v)
+    open_touch(recorder, stop, run.stretch, run.clock, rate, IMPACT, u, v)
     newton_impact(seen, v, rate, e)
     impulse = (1.0 + e) * rate / seen.inverse_mass
     add_exchange(recorder, stop, 0.5 * (1.0 - e) * impulse * rate, impulse, math.nan)
-    close_touch(recorder, stop, run.period, run.clock, -rebound, u, v)
+    close_touch(recorder, stop, run.stretch, run.clock, -rebound, u, v)
     sets.states[stop].contact_order = 1
     return True
 
 
 @part
-def meet_several(motion, run, u, v, crosses, recorder, sets):
+def meet_several(numbers, run, u, v, crosses, recorder, sets):
     """A flight has met the stop of the run, or with `crosses` false grazes it; returns the status."""
     status = GOING
-    seen = seen_from(motion, run.stop)
+    seen = seen_from(numbers, run.stop)
     if not crosses:
         meet(seen, run, u, v, False, recorder)
         sets.states[run.stop].contact_order, run.contact_order = run.contact_order, 0
-    elif not lone_impact(motion, seen, run, u, v, recorder, sets):
+    elif not lone_impact(numbers, seen, run, u, v, recorder, sets):
         sets.event[:] = 0
         sets.event[run.stop] = CHANGES
-        status = instant(motion, run, u, v, sets, recorder)
+        status = instant(numbers, run, u, v, sets, recorder)
     return status

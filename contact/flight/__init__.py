@@ -1,8 +1,10 @@
 """Between contacts: flights in closed form, and the certified search for the first crossing of the stop.
 
 `elementary`          sine, cosine, exponential and root to the last place, products without rounding error
-`motion`              `Motion`, the numbers of an oscillator for compiled code
-`modal_flow`          the closed-form flow of its modes, and the tip as their sum
+`numbers`             `Numbers`, the numbers of an oscillator for compiled code
+`clock`               times as the number of a stretch and the time since its strobe
+`modal_flow`          the closed-form flow of the modes
+`tip`                 the tip over the stop as a sum over the modes, and its bounds
 `variation`           tangents: derivatives of a motion with respect to its start and its numbers
 `bounds`              stretches of a flight that are proved free of a crossing
 `tip_search`          the tip during a flight: roots and peaks in a bracket, and all peaks

@@ -44,7 +44,7 @@ from typing import NamedTuple
 
 from contact.flight.elementary import sine_cosine
 from contact.flight.modal_flow import START_U, START_V, mode_flow
-from contact.flight.motion import DECAY, OMEGA, SQUARE, WEIGHT
+from contact.flight.numbers import DECAY, OMEGA, SQUARE, WEIGHT
 from contact.machine.compiled import kernel, part
 
 SKIP, ROOT, PEAK, NEAR, STALL = 0, 1, 2, 3, 4
@@ -96,37 +96,37 @@ class LowestMode(NamedTuple):
 
 
 @part
-def peak_of_drive(motion):
+def peak_of_drive(numbers):
     """The time of the steady peak of the tip, from 0 to the drive period [s]; 0 without a drive."""
-    if not motion.drive > 0.0:
+    if not numbers.drive > 0.0:
         return 0.0
-    angle = math.atan2(motion.tip_sine, motion.tip_cosine)
-    return (angle if angle >= 0.0 else angle + 2.0 * math.pi) / motion.drive
+    angle = math.atan2(numbers.tip_sine, numbers.tip_cosine)
+    return (angle if angle >= 0.0 else angle + 2.0 * math.pi) / numbers.drive
 
 
 @part
-def lowest_mode(motion, flight, base, span, peak, rest, margin):
+def lowest_mode(numbers, flight, base, span, peak, rest, margin):
     """The bounds for a `span` of times of a flight that starts a time `base` after a strobe [s].
 
     `flight` holds its start, `peak` is `peak_of_drive`, `rest` is r, infinite if a mode of zero frequency
     takes part [m], and `margin` the rounding bound of the tip displacement [m].
     """
-    w, gap, omega, period = motion.drive, -motion.level, motion.modes[OMEGA, 0], motion.period
+    w, gap, omega, period = numbers.drive, -numbers.level, numbers.modes[OMEGA, 0], numbers.period
     u, v = flight[START_U, 0], flight[START_V, 0]
     near = rest * (1.0 + 1e-12) + 8.0 * margin
     nothing = LowestMode(0.0, 0.0, 0.0, 0.0, near)
     if not (w > 0.0 and omega > 0.0 and gap > near):
         return nothing
-    rho = abs(motion.modes[WEIGHT, 0]) * math.sqrt(u * u + v * v / (omega * omega))
-    deviant = (abs(w - omega) * (w + omega) + motion.modes[DECAY, 0] * omega) * rho / (w * w)
+    rho = abs(numbers.modes[WEIGHT, 0]) * math.sqrt(u * u + v * v / (omega * omega))
+    deviant = (abs(w - omega) * (w + omega) + numbers.modes[DECAY, 0] * omega) * rho / (w * w)
     slack = gap - deviant - near
-    if not (slack > LEAST_SLACK * gap and rho + near + UNCERTAIN * motion.amplitude < gap):
+    if not (slack > LEAST_SLACK * gap and rho + near + UNCERTAIN * numbers.amplitude < gap):
         return nothing
     quarter, start, end = 0.25 * period, base + span[0], base + span[1]
     reach = 3.0 * quarter * (1.0 + 1e-12)
     if max(peak - start, end - peak) > reach:  # the peak before or after may be closer
         peak += period if start > peak else -period
-    if not (max(peak - start, end - peak) <= reach and motion.amplitude <= HIGHEST * gap):
+    if not (max(peak - start, end - peak) <= reach and numbers.amplitude <= HIGHEST * gap):
         return nothing
     return LowestMode(peak, quarter, gap - deviant, slack, near)
 
@@ -139,17 +139,17 @@ def free_from(lowest, t, height, rate):
 
 
 @part
-def without_others(motion, flight, base, s):
+def without_others(numbers, flight, base, s):
     """Tip displacement relative to the stop without the modes above the lowest, and three derivatives."""
-    w, c, o2 = motion.drive, motion.modes[DECAY, 0], motion.modes[SQUARE, 0]
+    w, c, o2 = numbers.drive, numbers.modes[DECAY, 0], numbers.modes[SQUARE, 0]
     sine, cosine = sine_cosine(w * (base + s), 0.0)
-    steady = motion.tip_sine * sine + motion.tip_cosine * cosine
-    steady_rate = w * (motion.tip_sine * cosine - motion.tip_cosine * sine)
-    u, v = mode_flow(motion.modes, 0, flight[START_U, 0], flight[START_V, 0], s)
+    steady = numbers.tip_sine * sine + numbers.tip_cosine * cosine
+    steady_rate = w * (numbers.tip_sine * cosine - numbers.tip_cosine * sine)
+    u, v = mode_flow(numbers.modes, 0, flight[START_U, 0], flight[START_V, 0], s)
     a = -c * v - o2 * u
-    phi = motion.modes[WEIGHT, 0]
+    phi = numbers.modes[WEIGHT, 0]
     return (
-        motion.level + steady + phi * u,
+        numbers.level + steady + phi * u,
         steady_rate + phi * v,
         phi * a - w * w * steady,
         -w * w * steady_rate - phi * (c * a + o2 * v),
@@ -157,19 +157,19 @@ def without_others(motion, flight, base, s):
 
 
 @part
-def free_until(motion, flight, lowest, base, span):
+def free_until(numbers, flight, lowest, base, span):
     """Time since the start of the flight up to which no touch can come in a `span` of it [s]; the end of the
     span if none can."""
     free, duration = span
     if not lowest.slack > 0.0:
         return free
-    w, least, start, end = motion.drive, lowest.slack, base + free, base + duration
-    goal = 1.25 * lowest.near + 0.5 * CLOSE * abs(motion.level)
+    w, least, start, end = numbers.drive, lowest.slack, base + free, base + duration
+    goal = 1.25 * lowest.near + 0.5 * CLOSE * abs(numbers.level)
     t = min(max(lowest.peak, start), end)
     for _ in range(TRIES):
         if t - lowest.peak > lowest.quarter:
             return duration if t == start else free
-        height, rate, curvature, third = without_others(motion, flight, base, t - base)
+        height, rate, curvature, third = without_others(numbers, flight, base, t - base)
         z = height + lowest.mean
         if z * z + (rate / w) ** 2 < least * least and t >= lowest.peak - lowest.quarter:
             return duration

@@ -22,9 +22,10 @@ import numpy as np
 from contact.flight import modal_flow as rows
 from contact.flight.bounds import PEAK, ROOT, SKIP, certify, free_from, free_until, lowest_mode, peak_of_drive
 from contact.flight.elementary import EPS
-from contact.flight.modal_flow import flow, load_state, new_flight, tip_rounding, tip_steady
-from contact.flight.motion import DECAY, INVERSE_OMEGA, LOAD, SQUARE, WEIGHT
+from contact.flight.modal_flow import flow, load_state, new_flight
+from contact.flight.numbers import DECAY, INVERSE_OMEGA, LOAD, SQUARE, WEIGHT
 from contact.flight.polynomial_root import horner
+from contact.flight.tip import tip_rounding, tip_steady
 from contact.flight.tip_search import find_peak, find_root, tip_now
 from contact.machine.compiled import kernel, part
 from contact.machine.vector_loops import LANES
@@ -36,18 +37,18 @@ GRAZE_TOLERANCE = 1e-13  # largest rounding bound, relative to the gap, with whi
 
 
 @kernel
-def stretch_off_wall(motion, flight, base, contact_order, h, h_min):
+def stretch_off_wall(numbers, flight, base, contact_order, h, h_min):
     """The longest of h, h/2, ... on which a flight that starts on the wall is proved free; 0 if none is.
 
     `contact_order` derivatives of the tip displacement vanish at the start, from the zeroth on: 1, 2 or 3.
     """
-    w = motion.drive
-    _level, y1, y2 = tip_steady(motion, base)
+    w = numbers.drive
+    _level, y1, y2 = tip_steady(numbers, base)
     y3 = -w * w * y1
-    m4 = motion.amplitude * w**4
-    modes, u, v = motion.modes, flight[rows.START_U], flight[rows.START_V]
+    m4 = numbers.amplitude * w**4
+    modes, u, v = numbers.modes, flight[rows.START_U], flight[rows.START_V]
     decay, square, phi, load = modes[DECAY], modes[SQUARE], modes[WEIGHT], modes[LOAD]
-    for k in range(motion.size):
+    for k in range(numbers.size):
         c, o2 = decay[k], square[k]
         d2 = load[k] - c * v[k] - o2 * u[k]
         d3 = -c * d2 - o2 * v[k]
@@ -72,19 +73,19 @@ def stretch_off_wall(motion, flight, base, contact_order, h, h_min):
 
 
 @part
-def amplitudes(motion, flight):
+def amplitudes(numbers, flight):
     """Fill row ABOVE: the sum of the amplitudes of all modes above each [m].
 
     Returns the number of modes, from the first on, that cannot be bounded and are always sampled (modes of
     zero frequency and all below them), and the sum of all amplitudes [m].
     """
     u, v, above = flight[rows.START_U], flight[rows.START_V], flight[rows.ABOVE]
-    phi, inverse_omega = motion.modes[WEIGHT], motion.modes[INVERSE_OMEGA]
+    phi, inverse_omega = numbers.modes[WEIGHT], numbers.modes[INVERSE_OMEGA]
     for k in range(above.size):
         x = v[k] * inverse_omega[k]
         above[k] = abs(phi[k]) * math.sqrt(u[k] * u[k] + x * x)
     must, whole = 0, 0.0
-    for k in range(motion.size - 1, -1, -1):
+    for k in range(numbers.size - 1, -1, -1):
         if must == 0 and not inverse_omega[k] > 0.0:
             must = k + 1
         own = above[k] if must == 0 else math.inf
@@ -110,7 +111,7 @@ def tip_rows(modes, flight, start, stop):
 
 
 @kernel
-def first_crossing(motion, base, u, v, duration, contact_order):
+def first_crossing(numbers, base, u, v, duration, contact_order):
     """First time in (0, duration] at which a free flight crosses the stop.
 
     Parameters
@@ -126,9 +127,9 @@ def first_crossing(motion, base, u, v, duration, contact_order):
 
     Returns the outcome, FREE, CROSSES, GRAZES or UNRESOLVED, and the time since the start of the flight [s].
     """
-    flight = new_flight(motion)
+    flight = new_flight(numbers)
     load_state(flight, u, v)
-    return searched_flight(motion, flight, base, duration, contact_order)
+    return searched_flight(numbers, flight, base, duration, contact_order)
 
 
 @part
@@ -140,22 +141,22 @@ def needed_modes(above, sampled, least, distance):
 
 
 @part
-def sample_tip(motion, flight, lowest, base, s, sampled):
+def sample_tip(numbers, flight, lowest, base, s, sampled):
     """Sample the lowest modes a time `s` into the flight, more than `sampled` if the gap is small.
 
     Returns the number of modes sampled, 0 if the lowest proves that no touch can come any more; without the
     other modes, the tip displacement relative to the stop and two derivatives; and a bound of the third.
     """
-    w, above = motion.drive, flight[rows.ABOVE]
+    w, above = numbers.drive, flight[rows.ABOVE]
     height, rate = flight[rows.HEIGHT], flight[rows.RATE]
     acceleration, jerk_bound = flight[rows.ACCELERATION], flight[rows.JERK_BOUND]
-    y0, y1, y2 = tip_steady(motion, base + s)
-    m3 = motion.amplitude * w**3
+    y0, y1, y2 = tip_steady(numbers, base + s)
+    m3 = numbers.amplitude * w**3
     k, ready = 0, 0
     while k < sampled:
         if k == ready:
-            flow(motion, flight, ready, ready + LANES, s)
-            tip_rows(motion.modes, flight, ready, ready + LANES)
+            flow(numbers, flight, ready, ready + LANES, s)
+            tip_rows(numbers.modes, flight, ready, ready + LANES)
             ready += LANES
         y0 += height[k]
         y1 += rate[k]
@@ -164,44 +165,44 @@ def sample_tip(motion, flight, lowest, base, s, sampled):
         if k == 0 and free_from(lowest, base + s, y0, y1):
             sampled = 0
         k += 1
-        if k == sampled and sampled < motion.size and above[sampled - 1] > 0.25 * max(-y0, 0.0):
+        if k == sampled and sampled < numbers.size and above[sampled - 1] > 0.25 * max(-y0, 0.0):
             sampled += 1
     return sampled, y0, y1, y2, m3
 
 
 @part
-def outcome_at_peak(motion, flight, base, point, step, duration, m3, margin):
+def outcome_at_peak(numbers, flight, base, point, step, duration, m3, margin):
     """Outcome and time of a stretch of length `step` with one peak, and the height of the peak [m].
 
     The stretch starts at `point`, (time, tip displacement and two derivatives).
     """
     s = point[0]
-    peak = find_peak(motion, flight, base, point, (s, s + step), m3, margin)
+    peak = find_peak(numbers, flight, base, point, (s, s + step), m3, margin)
     beyond = peak > duration
     end = duration if beyond else peak  # the motion rises up to here
-    top = tip_now(motion, flight, base, end)[0]
+    top = tip_now(numbers, flight, base, end)[0]
     if top > margin:
-        return CROSSES, find_root(motion, flight, base, point, (s, end), m3, margin), top
+        return CROSSES, find_root(numbers, flight, base, point, (s, end), m3, margin), top
     if beyond:
         return FREE, duration, top
     if top >= -margin:
-        return UNRESOLVED if margin > GRAZE_TOLERANCE * motion.gap else GRAZES, peak, top
+        return UNRESOLVED if margin > GRAZE_TOLERANCE * numbers.gap else GRAZES, peak, top
     return BELOW, peak, top
 
 
 @kernel
-def end_of_hop(motion, flight, base, s):
+def end_of_hop(numbers, flight, base, s):
     """The end of a short flight from the wall and back, near `s`, to all digits.
 
     Heights of a low hop are small differences of large numbers.  Here height zero at the start is exact, and
     the end is a root of y(s)/s, from the Taylor series of the modes.
     """
-    w, modes, height = motion.drive, motion.modes, np.zeros(HOP_ORDER)
-    _level, height[0], pull = tip_steady(motion, base)
+    w, modes, height = numbers.drive, numbers.modes, np.zeros(HOP_ORDER)
+    _level, height[0], pull = tip_steady(numbers, base)
     height[1] = 0.5 * pull
     for n in range(2, HOP_ORDER):
         height[n] = -w * w * height[n - 2] / (n * (n + 1.0))
-    for k in range(motion.size):
+    for k in range(numbers.size):
         low, high, load = flight[rows.START_U, k], flight[rows.START_V, k], modes[LOAD, k]
         for n in range(HOP_ORDER):
             height[n] += modes[WEIGHT, k] * high
@@ -215,41 +216,41 @@ def end_of_hop(motion, flight, base, s):
 
 
 @kernel
-def searched_flight(motion, flight, base, duration, contact_order):
+def searched_flight(numbers, flight, base, duration, contact_order):
     """`first_crossing` of the flight that starts at rows START_U and START_V of its workspace."""
-    must, whole = amplitudes(motion, flight)
-    margin = tip_rounding(motion, flight[rows.START_U], flight[rows.START_V])
-    if contact_order == 0 and motion.level + motion.amplitude + whole < -margin:
+    must, whole = amplitudes(numbers, flight)
+    margin = tip_rounding(numbers, flight[rows.START_U], flight[rows.START_V])
+    if contact_order == 0 and numbers.level + numbers.amplitude + whole < -margin:
         return FREE, duration
-    peak, first, end, half = peak_of_drive(motion), 0.0, duration, 0.5 * motion.period
+    peak, first, end, half = peak_of_drive(numbers), 0.0, duration, 0.5 * numbers.period
     if base < half < base + duration and abs(peak - half) > 0.5 * half * (1.0 + 1e-12):
         end = half - base
     while True:
         span, off = (first, end), contact_order == 0 or first > 0.0
         outcome, s = searched_span(
-            motion, flight, base, span, 0 if off else contact_order, peak, must, margin
+            numbers, flight, base, span, 0 if off else contact_order, peak, must, margin
         )
-        if outcome == CROSSES and contact_order == 1 and s * motion.fastest < HOP:
-            s = end_of_hop(motion, flight, base, s)
+        if outcome == CROSSES and contact_order == 1 and s * numbers.fastest < HOP:
+            s = end_of_hop(numbers, flight, base, s)
         if outcome != FREE or s >= duration:
             return outcome, min(s, duration)
         first, end = s, duration
 
 
 @part
-def searched_span(motion, flight, base, span, contact_order, peak, must, margin):
+def searched_span(numbers, flight, base, span, contact_order, peak, must, margin):
     """The first crossing in a `span` of times of a flight [s], which is free up to there."""
-    n, above, duration = motion.size, flight[rows.ABOVE], span[1]
-    lowest = lowest_mode(motion, flight, base, span, peak, above[0], margin)
-    h, h_min = 0.05 * motion.period, 64.0 * EPS * (base + duration)
-    if motion.fastest > 0.0:
-        h_min += 1e-15 / motion.fastest
+    n, above, duration = numbers.size, flight[rows.ABOVE], span[1]
+    lowest = lowest_mode(numbers, flight, base, span, peak, above[0], margin)
+    h, h_min = 0.05 * numbers.period, 64.0 * EPS * (base + duration)
+    if numbers.fastest > 0.0:
+        h_min += 1e-15 / numbers.fastest
     if contact_order == 0:
-        s = free_until(motion, flight, lowest, base, span)
+        s = free_until(numbers, flight, lowest, base, span)
         if s >= duration:
             return FREE, duration
     else:
-        s = stretch_off_wall(motion, flight, base, contact_order, h, h_min)
+        s = stretch_off_wall(numbers, flight, base, contact_order, h, h_min)
         if s == 0.0:
             return UNRESOLVED, 0.0
         if s >= duration:
@@ -259,14 +260,14 @@ def searched_span(motion, flight, base, span, contact_order, peak, must, margin)
     while s < duration:
         if distance > 0.0:
             sampled = needed_modes(above, sampled, least, distance)
-        sampled, y0, y1, y2, m3 = sample_tip(motion, flight, lowest, base, s, sampled)
+        sampled, y0, y1, y2, m3 = sample_tip(numbers, flight, lowest, base, s, sampled)
         if sampled == 0:
             return FREE, duration
         if sampled == n and s == 0.0 and abs(y0) <= margin:
             # on the wall within rounding although not by construction: the velocity decides
             if y1 > 0.0:
                 return CROSSES, 0.0
-            s = stretch_off_wall(motion, flight, base, 1 if y1 < 0.0 else 2, h, h_min)
+            s = stretch_off_wall(numbers, flight, base, 1 if y1 < 0.0 else 2, h, h_min)
             if s == 0.0:
                 return UNRESOLVED, 0.0
             continue
@@ -275,10 +276,10 @@ def searched_span(motion, flight, base, span, contact_order, peak, must, margin)
         if proof == SKIP:
             distance = -y0
         elif proof == ROOT:
-            root = find_root(motion, flight, base, point, (s, s + step), m3, margin)
+            root = find_root(numbers, flight, base, point, (s, s + step), m3, margin)
             return (FREE, duration) if root > duration else (CROSSES, root)
         elif proof == PEAK:
-            outcome, time, top = outcome_at_peak(motion, flight, base, point, step, duration, m3, margin)
+            outcome, time, top = outcome_at_peak(numbers, flight, base, point, step, duration, m3, margin)
             if outcome != BELOW:
                 return outcome, time
             distance = -top

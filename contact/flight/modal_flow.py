@@ -15,12 +15,6 @@ where (Cn, Sn) is (cos, sin/d) of d t with d = sqrt(D) for an under-damped mode,
 (cosh, sinh/k) of k t with k = sqrt(-D) for an over-damped one.  A mode of zero frequency under a constant
 load g adds g t^2 phi_2(-c t) to u, phi_2(x) = (e^x - 1 - x)/x^2.  The phase d t is a sum of two doubles.
 
-Bounds: every derivative of a free mode obeys the same equation, and v^2 + omega^2 u^2 never grows, hence for
-all later times, whatever the damping,
-
-    |u^(n)|   <= sqrt( (u^(n))^2 + (u^(n+1)/omega)^2 ) now,
-    |u^(n+1)| <= sqrt( (u^(n+1))^2 + omega^2 (u^(n))^2 ) now.
-
 Units: SI with mass-normalised modes (u in m kg^0.5).
 """
 
@@ -28,8 +22,8 @@ import math
 
 import numpy as np
 
-from contact.flight.elementary import EPS, FARTHEST, exponential, fast_sine_cosine, sine_cosine, two_product
-from contact.flight.motion import DAMPED, DAMPED_LOW, DECAY, LOAD, OMEGA, SQUARE, TIME_SCALE, WEIGHT, Motion
+from contact.flight.elementary import FARTHEST, exponential, fast_sine_cosine, sine_cosine, two_product
+from contact.flight.numbers import DAMPED, DAMPED_LOW, DECAY, LOAD, OMEGA, SQUARE, Numbers
 from contact.machine.compiled import aligned, inlined, kernel
 
 START_U, START_V, U, V, HEIGHT, RATE, ACCELERATION, JERK_BOUND, ABOVE = range(9)
@@ -45,9 +39,9 @@ BRIEF = 1e-12  # part of a drive period in which a load gives modes at rest a sp
 
 
 @kernel
-def new_flight(motion):
+def new_flight(numbers):
     """Workspace of flights, shape (9, m)."""
-    return aligned(9, motion.modes.shape[1])
+    return aligned(9, numbers.modes.shape[1])
 
 
 @kernel
@@ -127,20 +121,22 @@ def ringing_flow(modes, flight, start, stop, t):
 
 
 @inlined
-def flow(motion, flight, start, stop, t):
+def flow(numbers, flight, start, stop, t):
     """Deviations of modes `start` to `stop` a time `t` [s] into the flight, in its rows U and V."""
-    if motion.all_underdamped and motion.phase_rate * abs(t) < FARTHEST:
-        ringing_flow(motion.modes, flight, start, stop, t)
+    if numbers.all_underdamped and numbers.phase_rate * abs(t) < FARTHEST:
+        ringing_flow(numbers.modes, flight, start, stop, t)
     else:
         for k in range(start, stop):
-            flight[U, k], flight[V, k] = mode_flow(motion.modes, k, flight[START_U, k], flight[START_V, k], t)
+            flight[U, k], flight[V, k] = mode_flow(
+                numbers.modes, k, flight[START_U, k], flight[START_V, k], t
+            )
 
 
 @kernel
-def flow_over(motion, time):
+def flow_over(numbers, time):
     """The flow of all modes over a `time` [s], shape (n_modes, 6): matrix by rows, drift under the load."""
-    modes, flows = motion.modes, np.zeros((motion.size, 6))
-    for k in range(motion.size):
+    modes, flows = numbers.modes, np.zeros((numbers.size, 6))
+    for k in range(numbers.size):
         flows[k, 0], flows[k, 1], flows[k, 2], flows[k, 3] = flow_matrix(
             modes[OMEGA, k], modes[DECAY, k], modes[DAMPED, k], modes[DAMPED_LOW, k], time
         )
@@ -167,133 +163,51 @@ def clear_faint(u, v):
 
 
 @kernel
-def propagate_flight(motion, flight, t, u, v):
+def propagate_flight(numbers, flight, t, u, v):
     """Deviations (u, v) of all modes a time `t` [s] into the flight."""
-    flow(motion, flight, 0, flight.shape[1], t)
+    flow(numbers, flight, 0, flight.shape[1], t)
     for k in range(u.size):
         u[k] = flight[U, k]
         v[k] = flight[V, k]
 
 
 @kernel
-def propagate(motion, u, v, t, u_out, v_out):
+def propagate(numbers, u, v, t, u_out, v_out):
     """Deviations of all modes after a time `t` [s]; `u_out`, `v_out` may be `u`, `v` themselves."""
-    flight = new_flight(motion)
+    flight = new_flight(numbers)
     load_state(flight, u, v)
-    propagate_flight(motion, flight, t, u_out, v_out)
+    propagate_flight(numbers, flight, t, u_out, v_out)
 
 
 @kernel
-def mode_acceleration(motion, k, u, v):
+def mode_acceleration(numbers, k, u, v):
     """Second derivative of the deviation of mode `k` when no contact acts."""
-    modes = motion.modes
+    modes = numbers.modes
     return modes[LOAD, k] - modes[DECAY, k] * v - modes[SQUARE, k] * u
 
 
 @kernel
-def tip_steady(motion, t):
-    """Tip displacement relative to the stop, velocity and acceleration of the steady motion at drive time
-    `t`."""
-    w = motion.drive
-    s, c = sine_cosine(w * t, 0.0)
-    x = motion.tip_sine * s + motion.tip_cosine * c
-    return motion.level + x, w * (motion.tip_sine * c - motion.tip_cosine * s), -w * w * x
-
-
-@kernel
-def tip_state(motion, t, u, v):
-    """Tip displacement relative to the stop [m], its velocity and acceleration, at drive time `t`."""
-    modes = motion.modes
-    y0, y1, y2 = tip_steady(motion, t)
-    for k in range(u.size):
-        phi = modes[WEIGHT, k]
-        y0 += phi * u[k]
-        y1 += phi * v[k]
-        y2 += phi * (modes[LOAD, k] - modes[DECAY, k] * v[k] - modes[SQUARE, k] * u[k])
-    return y0, y1, y2
-
-
-@inlined
-def at_tip(motion, k, value):
-    """The tip part phi_k `value` of a displacement or velocity of mode `k`."""
-    return motion.modes[WEIGHT, k] * value
-
-
-@inlined
-def tip_sum(motion, rest, values):
-    """The tip sum of modal `values`, added to `rest`."""
-    for k in range(values.size):
-        rest += at_tip(motion, k, values[k])
-    return rest
-
-
-@inlined
-def tip_bound(motion, k, value, quadrature):
-    """Bound of the tip part of a `value` of mode `k` while the mode is free.
-
-    `quadrature` is the value a quarter period off: v/omega for u, omega u for v (see the bounds above).
-    """
-    return abs(motion.modes[WEIGHT, k]) * math.sqrt(value * value + quadrature * quadrature)
-
-
-@inlined
-def push_on(motion, k, push):
-    """The modal force or impulse -phi_k `push` of a force or impulse of the stop on the tip."""
-    return -motion.modes[WEIGHT, k] * push
-
-
-@kernel
-def hold(motion, clock, u, v):
-    """Put the tip on the wall at rest; otherwise rounding would let it drift off over many steps."""
-    height, velocity, _acceleration = tip_state(motion, clock, u, v)
-    for k in range(u.size):
-        u[k] += push_on(motion, k, height) / motion.inverse_mass
-        v[k] += push_on(motion, k, velocity) / motion.inverse_mass
-
-
-@kernel
-def tip_rounding(motion, u, v):
-    """Bound of the rounding error of the tip displacement in a flight that starts at (u, v) [m]."""
-    total = abs(motion.level) + abs(motion.tip_sine) + abs(motion.tip_cosine) + motion.gap
-    phi, time_scale = motion.modes[WEIGHT], motion.modes[TIME_SCALE]
-    for k in range(u.size):
-        total += abs(phi[k]) * (abs(u[k]) + abs(v[k]) * time_scale[k])
-    return 4.0 * EPS * total
-
-
-@kernel
-def jerk_bound(motion, u, v):
-    """Bound of the third derivative of the tip displacement in a flight from (u, v) [m/s^3]."""
-    total, modes = motion.amplitude * motion.drive**3, motion.modes
-    for k in range(motion.size):
-        a = mode_acceleration(motion, k, u[k], v[k])
-        jerk = -modes[DECAY, k] * a - modes[SQUARE, k] * v[k]
-        total += tip_bound(motion, k, jerk, math.sqrt(modes[SQUARE, k]) * a)
-    return total
-
-
-@kernel
-def speed_scale(motion, u, v):
+def speed_scale(numbers, u, v):
     """The square root of twice the modal energy, of the deviation and of the steady motion [m kg^0.5/s].
 
     It is above zero if anything moves: a load counts by the speed that it gives in a moment, see `BRIEF`.
     """
-    energy, square, load = motion.steady_energy, motion.modes[SQUARE], motion.modes[LOAD]
-    moment = BRIEF * motion.period
+    energy, square, load = numbers.steady_energy, numbers.modes[SQUARE], numbers.modes[LOAD]
+    moment = BRIEF * numbers.period
     for k in range(u.size):
         energy += v[k] * v[k] + square[k] * u[k] * u[k] + (moment * load[k]) ** 2
     return math.sqrt(energy)
 
 
-def steady_motion(motion: Motion, clock: float | np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def steady_motion(numbers: Numbers, clock: float | np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Steady modal displacement and velocity at times `clock` since a strobe, each (..., n_modes)."""
-    sine, cosine, offset = motion.steady
-    phase = motion.drive * np.asarray(clock, dtype=float)[..., None]
+    sine, cosine, offset = numbers.steady
+    phase = numbers.drive * np.asarray(clock, dtype=float)[..., None]
     s, c = np.sin(phase), np.cos(phase)
-    return offset + sine * s + cosine * c, motion.drive * (sine * c - cosine * s)
+    return offset + sine * s + cosine * c, numbers.drive * (sine * c - cosine * s)
 
 
-def free_flow(motion: Motion, time: float) -> np.ndarray:
+def free_flow(numbers: Numbers, time: float) -> np.ndarray:
     """Free flow (u, u') -> (u, u') of each mode over `time` [s], of either sign, shape (n_modes, 2, 2)."""
-    flows: np.ndarray = flow_over(motion, time)[:, :4].reshape(-1, 2, 2)
+    flows: np.ndarray = flow_over(numbers, time)[:, :4].reshape(-1, 2, 2)
     return flows

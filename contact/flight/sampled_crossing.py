@@ -19,8 +19,9 @@ import numpy as np
 
 from contact.flight import modal_flow as rows
 from contact.flight.crossing import CROSSES, FREE
-from contact.flight.modal_flow import apply_flow, flow_over, propagate_flight, tip_rounding, tip_state
-from contact.flight.motion import Motion
+from contact.flight.modal_flow import apply_flow, flow_over, propagate_flight
+from contact.flight.numbers import Numbers
+from contact.flight.tip import tip_rounding, tip_state
 from contact.flight.tip_search import find_peak, root_between, tip_now
 from contact.machine.compiled import kernel
 
@@ -36,22 +37,22 @@ class Samples(NamedTuple):
     flows: np.ndarray  # flow over this time, shape (n_modes, 6)
 
 
-def samples_of(motion: Motion, points: int) -> Samples:
+def samples_of(numbers: Numbers, points: int) -> Samples:
     """Samples at so many `points` of each drive period."""
-    spacing = motion.period / points
-    return Samples(spacing, flow_over(motion, spacing))
+    spacing = numbers.period / points
+    return Samples(spacing, flow_over(numbers, spacing))
 
 
 @kernel
-def first_sampled_crossing(motion, flight, base, duration, contact_order, samples):
+def first_sampled_crossing(numbers, flight, base, duration, contact_order, samples):
     """First crossing of a free flight that `samples` detect; see ``contact.flight.crossing.first_crossing``.
 
     Returns FREE or CROSSES, the time since the start of the flight [s], and the number of positions computed.
     """
-    (spacing, flows), n, count = samples, motion.size, 0
+    (spacing, flows), n, count = samples, numbers.size, 0
     u, v = flight[rows.START_U, :n], flight[rows.START_V, :n]
-    margin = tip_rounding(motion, u, v)
-    height, rate, _acceleration = tip_state(motion, base, u, v)
+    margin = tip_rounding(numbers, u, v)
+    height, rate, _acceleration = tip_state(numbers, base, u, v)
     if contact_order == 0 and height >= -margin and rate > 0.0:
         return CROSSES, 0.0, count
     su, sv = u.copy(), v.copy()
@@ -66,17 +67,17 @@ def first_sampled_crossing(motion, flight, base, duration, contact_order, sample
         if abs(until - s - spacing) <= ALIGNED * spacing:
             apply_flow(flows, su, sv)
         else:
-            propagate_flight(motion, flight, until, su, sv)
-        height, new_rate, _acceleration = tip_state(motion, base + until, su, sv)
+            propagate_flight(numbers, flight, until, su, sv)
+        height, new_rate, _acceleration = tip_state(numbers, base + until, su, sv)
         if height > margin:
-            return CROSSES, root_between(motion, flight, base, s, until, margin), count
+            return CROSSES, root_between(numbers, flight, base, s, until, margin), count
         if rate > 0.0 and new_rate < 0.0:
             middle = 0.5 * (s + until)
-            y0, y1, y2 = tip_now(motion, flight, base, middle)
+            y0, y1, y2 = tip_now(numbers, flight, base, middle)
             point = (middle, y0, y1, y2)
-            peak = find_peak(motion, flight, base, point, (s, until), math.inf, margin)
+            peak = find_peak(numbers, flight, base, point, (s, until), math.inf, margin)
             count += 1
-            if tip_now(motion, flight, base, peak)[0] > margin:
-                return CROSSES, root_between(motion, flight, base, s, peak, margin), count
+            if tip_now(numbers, flight, base, peak)[0] > margin:
+                return CROSSES, root_between(numbers, flight, base, s, peak, margin), count
         s, rate = until, new_rate
     return FREE, duration, count

@@ -10,7 +10,8 @@ import math
 import numpy as np
 
 from contact.flight.elementary import EPS
-from contact.flight.modal_flow import U, V, flow, jerk_bound, load_state, new_flight, tip_rounding, tip_state
+from contact.flight.modal_flow import U, V, flow, load_state, new_flight
+from contact.flight.tip import jerk_bound, tip_rounding, tip_state
 from contact.machine.compiled import kernel
 
 SHORTEST = 1e-9
@@ -19,22 +20,22 @@ that lie closer differ in height by less than rounding."""
 
 
 @kernel
-def tip_now(motion, flight, base, s):
+def tip_now(numbers, flight, base, s):
     """Tip displacement relative to the stop and two derivatives, a time `s` into the flight."""
-    flow(motion, flight, 0, flight.shape[1], s)
-    return tip_state(motion, base + s, flight[U], flight[V])
+    flow(numbers, flight, 0, flight.shape[1], s)
+    return tip_state(numbers, base + s, flight[U], flight[V])
 
 
 @kernel
-def tip_at(motion, base, u, v, s):
+def tip_at(numbers, base, u, v, s):
     """Tip displacement relative to the stop and two derivatives, a time `s` into the flight from (u, v)."""
-    flight = new_flight(motion)
+    flight = new_flight(numbers)
     load_state(flight, u, v)
-    return tip_now(motion, flight, base, s)
+    return tip_now(numbers, flight, base, s)
 
 
 @kernel
-def find_root(motion, flight, base, point, bracket, m3, margin):
+def find_root(numbers, flight, base, point, bracket, m3, margin):
     """The root of the tip displacement in the `bracket`, where it rises from below to above zero [s].
 
     The search begins at `point`, a time with the displacement and two derivatives there.  `m3` bounds the
@@ -61,20 +62,20 @@ def find_root(motion, flight, base, point, bracket, m3, margin):
         if abs(new - s) <= 2.0 * EPS * abs(s) or high - low <= 2.0 * EPS * high:
             return new
         s = new
-        y0, y1, y2 = tip_now(motion, flight, base, s)
+        y0, y1, y2 = tip_now(numbers, flight, base, s)
     return s
 
 
 @kernel
-def root_between(motion, flight, base, low, high, margin):
+def root_between(numbers, flight, base, low, high, margin):
     """The root of the tip displacement in [low, high] [s]."""
     middle = 0.5 * (low + high)
-    y0, y1, y2 = tip_now(motion, flight, base, middle)
-    return find_root(motion, flight, base, (middle, y0, y1, y2), (low, high), math.inf, margin)
+    y0, y1, y2 = tip_now(numbers, flight, base, middle)
+    return find_root(numbers, flight, base, (middle, y0, y1, y2), (low, high), math.inf, margin)
 
 
 @kernel
-def find_peak(motion, flight, base, point, bracket, m3, margin):
+def find_peak(numbers, flight, base, point, bracket, m3, margin):
     """The peak of the tip displacement in a `bracket` where it is concave [s]; arguments of `find_root`."""
     s, _y0, y1, y2 = point
     low, high = bracket
@@ -97,31 +98,31 @@ def find_peak(motion, flight, base, point, bracket, m3, margin):
         if high - low <= 4.0 * EPS * (base + high):
             return new
         s = new
-        _unused, y1, y2 = tip_now(motion, flight, base, s)
+        _unused, y1, y2 = tip_now(numbers, flight, base, s)
     return s
 
 
 @kernel
-def peaks_of_flight(motion, base, u, v, span, rising):
+def peaks_of_flight(numbers, base, u, v, span, rising):
     """All peaks of the tip in a `span` of times of the flight from (u, v) [s], shape (n,).
 
     With |y'''| <= M and r = sqrt(y''^2 + 2 M |y'|), y' keeps its sign for a time (r - |y''|)/M, or
     (r + |y''|)/M where y'' leads away from zero, and y'' keeps its sign for |y''|/M.  None of these stretches
     holds two peaks.  Set `rising` if the tip may rise at the start; a tip that leaves the stop does not.
     """
-    flight = new_flight(motion)
+    flight = new_flight(numbers)
     load_state(flight, u, v)
-    margin = EPS * tip_rounding(motion, u, v)  # so that the time is as exact as the height
+    margin = EPS * tip_rounding(numbers, u, v)  # so that the time is as exact as the height
     (s, end), found, before, m3 = span, [0.0], 0.0, 0.0
     point, least = (s, 0.0, 0.0, 0.0), SHORTEST * (end - s)
     while True:
-        y0, y1, y2 = tip_now(motion, flight, base, s)
+        y0, y1, y2 = tip_now(numbers, flight, base, s)
         if before > 0.0 >= y1:
-            found.append(find_peak(motion, flight, base, point, (point[0], s), m3, margin))
-            flow(motion, flight, 0, flight.shape[1], s)
+            found.append(find_peak(numbers, flight, base, point, (point[0], s), m3, margin))
+            flow(numbers, flight, 0, flight.shape[1], s)
         if not s < end:
             return np.array(found[1:])
-        before, point, m3 = y1 if rising else 0.0, (s, y0, y1, y2), jerk_bound(motion, flight[U], flight[V])
+        before, point, m3 = y1 if rising else 0.0, (s, y0, y1, y2), jerk_bound(numbers, flight[U], flight[V])
         rising = True
         root, bend = math.sqrt(y2 * y2 + 2.0 * m3 * abs(y1)), abs(y2)
         sure = root + bend if y1 * y2 > 0.0 else max(bend, root - bend)

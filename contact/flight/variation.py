@@ -39,7 +39,7 @@ from typing import NamedTuple
 import numpy as np
 
 from contact.flight.modal_flow import flow_matrix, flow_over
-from contact.flight.motion import DAMPED, DAMPED_LOW, DECAY, OMEGA, WEIGHT, Motion
+from contact.flight.numbers import DAMPED, DAMPED_LOW, DECAY, OMEGA, WEIGHT, Numbers
 from contact.machine.compiled import kernel, part
 
 LEVEL, TIP_SINE, TIP_COSINE, DRIVE, NUMBER0, NUMBER1 = range(6)
@@ -52,7 +52,7 @@ TINY = 1e-300  # replaces |a + i b| where the drive does not move the tip
 class Variation(NamedTuple):
     """The motion whose tangents are carried along, and its derivatives with respect to the parameters."""
 
-    motion: Motion
+    numbers: Numbers
     response: complex  # a + i b
     square: np.ndarray  # of omega^2, shape (parameters, n_modes)
     decay: np.ndarray  # of c, the same
@@ -60,17 +60,17 @@ class Variation(NamedTuple):
     scalars: np.ndarray  # of single numbers, shape (parameters, 6); the columns are named above
 
 
-def variation(motion, response, *derivatives):
+def variation(numbers, response, *derivatives):
     """The variation with these `derivatives`, its last four fields; without parameters none are given."""
-    none = np.zeros((0, motion.size))
-    return Variation(motion, response, *(derivatives or (none, none, none, np.zeros((0, NUMBER1 + 1)))))
+    none = np.zeros((0, numbers.size))
+    return Variation(numbers, response, *(derivatives or (none, none, none, np.zeros((0, NUMBER1 + 1)))))
 
 
 @part
 def drive_now(vary, clock):
     """S and C at the drive time `clock` [s]."""
-    motion, angle = vary.motion, vary.motion.drive * clock
-    size = motion.amplitude / max(abs(vary.response), TINY)
+    numbers, angle = vary.numbers, vary.numbers.drive * clock
+    size = numbers.amplitude / max(abs(vary.response), TINY)
     return size * math.sin(angle), size * math.cos(angle)
 
 
@@ -104,8 +104,8 @@ def flow_derivative(modes, k, square, decay, t):
 @kernel
 def tangent_flight(vary, tangent, u, v, clock, time):
     """Carry the tangents through a free flight of length `time` [s] that starts from (u, v) at `clock`."""
-    motion = vary.motion
-    n, count, flows = motion.size, len(vary.scalars), flow_over(motion, time)
+    numbers = vary.numbers
+    n, count, flows = numbers.size, len(vary.scalars), flow_over(numbers, time)
     first = tangent.shape[1] - count
     for k in range(n):
         for j in range(tangent.shape[1]):
@@ -114,10 +114,10 @@ def tangent_flight(vary, tangent, u, v, clock, time):
             tangent[n + k, j] = flows[k, 2] * x + flows[k, 3] * y
         for p in range(count):
             if vary.square[p, k] != 0.0 or vary.decay[p, k] != 0.0:
-                a, b, c, d = flow_derivative(motion.modes, k, vary.square[p, k], vary.decay[p, k], time)
+                a, b, c, d = flow_derivative(numbers.modes, k, vary.square[p, k], vary.decay[p, k], time)
                 tangent[k, first + p] += a * u[k] + b * v[k]
                 tangent[n + k, first + p] += c * u[k] + d * v[k]
-    s, c = math.sin(motion.drive * time), math.cos(motion.drive * time)
+    s, c = math.sin(numbers.drive * time), math.cos(numbers.drive * time)
     for j in range(tangent.shape[1]):
         a, b = tangent[2 * n, j], tangent[2 * n + 1, j]
         tangent[2 * n, j], tangent[2 * n + 1, j] = c * a + s * b, c * b - s * a
@@ -129,15 +129,15 @@ def tangent_flight(vary, tangent, u, v, clock, time):
 
 
 @kernel
-def tip_changes(motion, response, tangent, height, rate):
+def tip_changes(numbers, response, tangent, height, rate):
     """Fill `height` and `rate` with the changes of y and y' along tangents, without parameter sources."""
-    n, w, a, b = motion.size, motion.drive, response.real, response.imag
+    n, w, a, b = numbers.size, numbers.drive, response.real, response.imag
     s, c = tangent[2 * n], tangent[2 * n + 1]
     for j in range(height.size):
         height[j] = a * s[j] + b * c[j]
         rate[j] = w * (a * c[j] - b * s[j])
     for k in range(n):
-        phi, u, v = motion.modes[WEIGHT, k], tangent[k], tangent[n + k]
+        phi, u, v = numbers.modes[WEIGHT, k], tangent[k], tangent[n + k]
         for j in range(height.size):
             height[j] += phi * u[j]
             rate[j] += phi * v[j]
@@ -150,7 +150,7 @@ def parameter_changes(vary, p, sine, cosine, constant):
     `constant` is 1 for values and coefficients of order 0, and 0 for higher orders, where the level is
     absent.
     """
-    w, a, b, change = vary.motion.drive, vary.response.real, vary.response.imag, vary.scalars[p]
+    w, a, b, change = vary.numbers.drive, vary.response.real, vary.response.imag, vary.scalars[p]
     da, db = change[TIP_SINE], change[TIP_COSINE]
     own, steady = da * cosine - db * sine, a * cosine - b * sine
     return change[LEVEL] * constant + da * sine + db * cosine, change[DRIVE] * steady + w * own
@@ -161,7 +161,7 @@ def all_tip_changes(vary, tangent, u, v, clock):
     """Changes of tip displacement and velocity along all tangents at (u, v), parameter sources included."""
     columns, count = tangent.shape[1], len(vary.scalars)
     height, rate = np.empty(columns), np.empty(columns)
-    tip_changes(vary.motion, vary.response, tangent, height, rate)
+    tip_changes(vary.numbers, vary.response, tangent, height, rate)
     if count > 0:
         sine, cosine = drive_now(vary, clock)
         for p in range(count):
@@ -181,11 +181,11 @@ def force_jump(vary, force, approach, tangent, before):
     This is the saltation matrix of Aizerman and Gantmacher (R. I. Leine, H. Nijmeijer, Dynamics and
     Bifurcations of Non-Smooth Mechanical Systems, 2004, ch. 7).
     """
-    motion = vary.motion
+    numbers = vary.numbers
     if force == 0.0:
         return
     clock, u, v = before
     height, _rate = all_tip_changes(vary, tangent, u, v, clock)
-    for k in range(motion.size):
+    for k in range(numbers.size):
         for j in range(height.size):
-            tangent[motion.size + k, j] -= motion.modes[WEIGHT, k] * force * height[j] / approach
+            tangent[numbers.size + k, j] -= numbers.modes[WEIGHT, k] * force * height[j] / approach

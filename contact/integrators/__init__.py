@@ -24,6 +24,7 @@ How to add a method with a time step
        common contract.
 """
 
+from contact.engine.plan import Plan
 from contact.integrators.central_difference import CentralDifference
 from contact.integrators.exact import EXACT_NAMES, Exact, SampledFlight
 from contact.integrators.generalised_alpha import GeneralisedAlpha
@@ -31,7 +32,6 @@ from contact.integrators.method import Integrator
 from contact.integrators.moreau_jean import MoreauJean
 from contact.integrators.nonsmooth_generalised_alpha import NonsmoothGeneralisedAlpha
 from contact.integrators.splitting import Splitting
-from contact.trajectory import Run
 
 STEPPED = (Splitting, CentralDifference, GeneralisedAlpha, MoreauJean, NonsmoothGeneralisedAlpha)
 
@@ -41,5 +41,5 @@ INTEGRATORS: dict[str, type[Integrator]] = {
 }
 """Every method of the package by its name."""
 
-__all__ = ["EXACT_NAMES", "INTEGRATORS", "Integrator", "Run"]
+__all__ = ["EXACT_NAMES", "INTEGRATORS", "Integrator", "Plan"]
 __all__ += sorted({kind.__name__ for kind in INTEGRATORS.values()})

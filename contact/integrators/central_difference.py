@@ -23,8 +23,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from contact.flight.modal_flow import push_on
-from contact.flight.motion import DECAY, Motion
+from contact.flight.numbers import DECAY, Numbers
+from contact.flight.tip import push_on
 from contact.integrators.fixed_step import FixedStep, stiffness_at
 from contact.integrators.grid import (
     DONE,
@@ -39,21 +39,21 @@ from contact.machine.compiled import kernel
 
 
 @kernel
-def central_difference(grid, numbers):
-    """Steps from the grid point reached; numbers: v_{n+1/2}, shape (n_modes,), and whether damping lags."""
-    half, lagged = numbers
-    progress, h, q, v, motion = grid.progress[0], grid.step, grid.q, grid.v, grid.motion
+def central_difference(grid, memory):
+    """Steps from the grid point reached; memory: v_{n+1/2}, shape (n_modes,), and whether damping lags."""
+    half, lagged = memory
+    progress, h, q, v, numbers = grid.progress[0], grid.step, grid.q, grid.v, grid.numbers
     while progress.step < grid.steps:
         for k in range(q.size):
             q[k] += h * half[k]
-        sine = math.sin(motion.drive * (grid.clock + (progress.step + 1) * h))
-        depth, rate = tip_of(motion, q, half)
-        push = contact_force(motion, depth, rate)
+        sine = math.sin(numbers.drive * (grid.clock + (progress.step + 1) * h))
+        depth, rate = tip_of(numbers, q, half)
+        push = contact_force(numbers, depth, rate)
         for k in range(q.size):
             old = half[k]
-            new = old + h * (force_in_flight(grid, k, sine, q, half) + push_on(motion, k, push))
+            new = old + h * (force_in_flight(grid, k, sine, q, half) + push_on(numbers, k, push))
             if not lagged:
-                c = 0.5 * h * motion.modes[DECAY, k]
+                c = 0.5 * h * numbers.modes[DECAY, k]
                 new = (new + c * old) / (1.0 + c)
             half[k], v[k] = new, 0.5 * (old + new)
         status = end_contact_step(grid, None, 1, depth, depth < 0.0, None)
@@ -71,11 +71,11 @@ class CentralDifference(FixedStep):
     order: ClassVar[float] = 2.0
     time_loop: ClassVar[Callable[..., int]] = staticmethod(central_difference)
 
-    def critical_stiffness(self, motion: Motion) -> float:
+    def critical_stiffness(self, numbers: Numbers) -> float:
         """Contact stiffness at which the highest frequency reaches the limit [N/m]; below zero if a mode is
         beyond the limit."""
-        lag = 2.0 * motion.decay / self.step if self.lagged else 0.0
-        return stiffness_at(motion, 4.0 / self.step**2 - lag)
+        lag = 2.0 * numbers.decay / self.step if self.lagged else 0.0
+        return stiffness_at(numbers, 4.0 / self.step**2 - lag)
 
     def prepare(self, grid: Grid) -> tuple[np.ndarray, bool]:
         """v_{1/2}, and whether damping lags."""

@@ -22,14 +22,15 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from beam.parameters import require_whole
+from contact.engine.plan import Plan
 from contact.engine.start import exact_trajectory
 from contact.flight.sampled_crossing import samples_of
 from contact.integrators.method import Integrator
 from contact.oscillator import ImpactOscillator
-from contact.touch import TOUCHES
-from contact.trajectory import Run, Trajectory
+from contact.touch import LAWS
+from contact.trajectory import Trajectory
 
-EXACT_NAMES = {code: file.METHOD for code, file in TOUCHES.items()}  # names of the exact method with each law
+EXACT_NAMES = {code: file.METHOD for code, file in LAWS.items()}  # names of the exact method with each law
 MOST_POINTS = 10**9  # largest number of samples per drive period, which take some minutes
 
 
@@ -39,13 +40,13 @@ class Exact(Integrator):
 
     name: ClassVar[str] = "exact"
     order: ClassVar[float] = math.inf
-    laws: ClassVar[tuple[int, ...]] = tuple(TOUCHES)
+    laws: ClassVar[tuple[int, ...]] = tuple(LAWS)
     certified: ClassVar[bool] = True
     accuracy: ClassVar[float] = 1e-12
 
-    def follow(self, oscillator: ImpactOscillator, run: Run) -> Trajectory:
-        """The motion of `run`, exact to rounding."""
-        return exact_trajectory(oscillator, run)
+    def follow(self, oscillator: ImpactOscillator, plan: Plan) -> Trajectory:
+        """The motion of `plan`, exact to rounding."""
+        return exact_trajectory(oscillator, plan)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -65,6 +66,6 @@ class SampledFlight(Integrator):
         points = require_whole("points", self.points, "samples per drive period", high=MOST_POINTS)
         object.__setattr__(self, "points", points)
 
-    def follow(self, oscillator: ImpactOscillator, run: Run) -> Trajectory:
-        """The motion of `run`, exact to rounding if no crossing is missed."""
-        return exact_trajectory(oscillator, run, samples_of(oscillator.motion(), self.points))
+    def follow(self, oscillator: ImpactOscillator, plan: Plan) -> Trajectory:
+        """The motion of `plan`, exact to rounding if no crossing is missed."""
+        return exact_trajectory(oscillator, plan, samples_of(oscillator.numbers(), self.points))

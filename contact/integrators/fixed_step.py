@@ -8,63 +8,64 @@ from typing import ClassVar
 import numpy as np
 
 from beam.parameters import InvalidValue, brief, is_number, require
+from contact.engine.plan import Plan
 from contact.engine.recorder import Recorder, grown, recorder_for, trajectory_of
 from contact.errors import Diverged, StepTooLarge
 from contact.flight.modal_flow import steady_motion
-from contact.flight.motion import Motion
+from contact.flight.numbers import Numbers
 from contact.integrators.grid import DIVERGED, DONE, FULL, PROGRESS, Grid, first_tangent
 from contact.integrators.method import FORCE_LAWS, Integrator
 from contact.oscillator import ImpactOscillator
 from contact.touch.passage import open_touch
-from contact.trajectory import CONTACT, OUTSIDE, UNDER_WAY, Run, State, Trajectory
+from contact.trajectory import CONTACT, OUTSIDE, UNDER_WAY, State, Trajectory
 
 
-def stiffness_at(motion: Motion, square: float | np.ndarray) -> float:
+def stiffness_at(numbers: Numbers, square: float | np.ndarray) -> float:
     """Stiffness of a lasting contact at which the highest squared frequency reaches `square` [N/m].
 
     The squared frequencies lambda of K + k phi phi^T are the roots of 1 + k sum phi^2/(omega^2 - lambda) = 0,
     so that k = 1/sum phi^2/(lambda - omega^2).  The result is below zero if a mode lies higher already.
     `square` [rad^2/s^2] may differ from mode to mode, shape (n_modes,).
     """
-    slack = square - motion.omega**2
-    return 1.0 / motion.mobility(slack) if np.all(slack > 0.0) else -1.0
+    slack = square - numbers.omega**2
+    return 1.0 / numbers.mobility(slack) if np.all(slack > 0.0) else -1.0
 
 
-def _refuse(motion: Motion, run: Run, step: float, critical: float, where: dict[str, float]) -> None:
+def _refuse(numbers: Numbers, plan: Plan, step: float, critical: float, where: dict[str, float]) -> None:
     """ValueError for a start behind the stop, StepTooLarge for a step that cannot be stable."""
-    within = step * motion.most_at_tip(run.start.velocity) + 1e-12 * max(motion.gap, 1e-6)
-    if motion.law not in FORCE_LAWS and -where["gap"] > within:
+    within = step * numbers.most_at_tip(plan.start.velocity) + 1e-12 * max(numbers.gap, 1e-6)
+    if numbers.law not in FORCE_LAWS and -where["gap"] > within:
         raise InvalidValue(
             f"displacement of the state puts the tip {-where['gap']:.3g} m behind the stop; with an impact "
             "law it must start on the near side"
         )
-    stiff, _damping = first_tangent(motion)
+    stiff, _damping = first_tangent(numbers)
     if critical <= 0.0 or stiff > critical:
         bears = f"it bears a contact of {critical:.4g} N/m, and the first touch has {stiff:.4g} N/m"
         bears = "it is unstable even in flight" if critical <= 0.0 else bears
         raise StepTooLarge(**where, detail=f"step {step:.4g} s: {bears}")  # type: ignore[arg-type]
 
 
-def _merged(recorder: Recorder, run: Run, period: float) -> tuple[Recorder, np.ndarray]:
+def _merged(recorder: Recorder, plan: Plan, period: float) -> tuple[Recorder, np.ndarray]:
     """A recorder with strobes, wanted times and the end of the run as samples in the order of time.
 
     The array tells for each strobe, then each wanted time, last the end, which sample it is.
     """
-    strobes = period * np.arange(1, run.last - run.first + 1)
-    wanted = (run.sample_period - run.first) * period + run.sample_clock
-    clock = np.concatenate([strobes, wanted, [run.clock + run.length]])
+    strobes = period * np.arange(1, plan.last - plan.first + 1)
+    wanted = (plan.sample_stretch - plan.first) * period + plan.sample_clock
+    clock = np.concatenate([strobes, wanted, [plan.clock + plan.length]])
     order = np.argsort(clock, kind="stable")
-    samples, period_of = np.empty((clock.size, recorder.samples.shape[1])), np.full(clock.size, run.first)
-    merged = recorder._replace(sample_period=period_of, sample_clock=clock[order], samples=samples)
+    samples, stretch_of = np.empty((clock.size, recorder.samples.shape[1])), np.full(clock.size, plan.first)
+    merged = recorder._replace(sample_stretch=stretch_of, sample_clock=clock[order], samples=samples)
     return merged, np.argsort(order)
 
 
-def _separated(recorder: Recorder, run: Run, order: np.ndarray, period: float, begun: bool) -> Recorder:
+def _separated(recorder: Recorder, plan: Plan, order: np.ndarray, period: float, begun: bool) -> Recorder:
     """Undo `_merged`: split the samples into strobes and wanted times, and count touches between strobes.
 
     The first touch does not count if it was `begun` when the run began.
     """
-    passed, rows = run.last - run.first, recorder.samples[order]
+    passed, rows = plan.last - plan.first, recorder.samples[order]
     began = recorder.log["start"][int(begun) : recorder.marks[0]["logged"]]
     edges = np.concatenate([[-math.inf], period * np.arange(1, passed + 1)])
     counts = np.diff(np.searchsorted(began, edges, side="right"))
@@ -106,42 +107,46 @@ class FixedStep(Integrator):
         """The numbers and arrays that the time loop needs besides the grid."""
         raise NotImplementedError
 
-    def follow(self, oscillator: ImpactOscillator, run: Run) -> Trajectory:
-        """The motion of `run` on a grid of steps.
+    def follow(self, oscillator: ImpactOscillator, plan: Plan) -> Trajectory:
+        """The motion of `plan` on a grid of steps.
 
         ValueError is raised for a start behind the stop under an impact law; see ``contact.errors`` for
         StepTooLarge and Diverged.
         """
-        n, period, start, motion = oscillator.n_modes, oscillator.period, run.start, oscillator.motion()
-        step, forced = float(self.step), motion.law in FORCE_LAWS
+        n, period, start, numbers = oscillator.n_modes, oscillator.period, plan.start, oscillator.numbers()
+        step, forced = float(self.step), numbers.law in FORCE_LAWS
 
         def steady(clock: float) -> np.ndarray:
             """The part of (q, v) that the method does not carry, shape (2, n_modes)."""
-            return np.array(steady_motion(motion, clock)) if self.deviations else np.zeros((2, n))
+            return np.array(steady_motion(numbers, clock)) if self.deviations else np.zeros((2, n))
 
         def where(time: float, q: np.ndarray, v: np.ndarray) -> dict[str, float]:
-            return {"time": time, "gap": motion.gap - float(motion.tip(q)), "velocity": float(motion.tip(v))}
+            return {
+                "time": time,
+                "gap": numbers.gap - float(numbers.tip(q)),
+                "velocity": float(numbers.tip(v)),
+            }
 
         here = where(start.time, start.displacement, start.velocity)
-        critical = math.inf if self.beyond_limit else float(self.critical_stiffness(motion))
-        _refuse(motion, run, step, critical, here)
-        q, v = np.array([start.displacement, start.velocity]) - steady(run.clock)
-        recorder, order = _merged(recorder_for(run, n), run, period)
+        critical = math.inf if self.beyond_limit else float(self.critical_stiffness(numbers))
+        _refuse(numbers, plan, step, critical, here)
+        q, v = np.array([start.displacement, start.velocity]) - steady(plan.clock)
+        recorder, order = _merged(recorder_for(plan, n), plan, period)
         under_way = forced and here["gap"] < 0.0
         if under_way:
-            open_touch(recorder, 0, run.first, run.clock, math.nan, UNDER_WAY, q, v)
+            open_touch(recorder, 0, plan.first, plan.clock, math.nan, UNDER_WAY, q, v)
         progress = np.zeros(1, dtype=PROGRESS)
         progress["due"] = -math.inf  # the first step has to look for samples
-        base = 0.0 if oscillator.drive is None else oscillator.drive.amplitude * motion.drive**2
+        base = 0.0 if oscillator.drive is None else oscillator.drive.amplitude * numbers.drive**2
         grid = Grid(
             progress=progress,
-            motion=motion,
+            numbers=numbers,
             push=oscillator.model.participation * base,
             constant=np.zeros(n) if oscillator.load is None else np.array(oscillator.load),
             step=step,
-            clock=run.clock,
-            first=run.first,
-            steps=math.ceil(run.length / step - 1e-9),
+            clock=plan.clock,
+            first=plan.first,
+            steps=math.ceil(plan.length / step - 1e-9),
             critical=critical,
             q=q,
             v=v,
@@ -155,15 +160,15 @@ class FixedStep(Integrator):
         while (status := self.time_loop(grid, prepared)) == FULL:
             grid = grid._replace(recorder=grown(grid.recorder))
         if status != DONE:
-            reached = run.clock + progress[0]["step"] * step
-            here = where(start.time - run.clock + reached, *(np.array([grid.q, grid.v]) + steady(reached)))
+            reached = plan.clock + progress[0]["step"] * step
+            here = where(start.time - plan.clock + reached, *(np.array([grid.q, grid.v]) + steady(reached)))
             why = "" if status == DIVERGED else f"step {step:.4g} s: the contact has become too stiff for it"
             raise (Diverged if status == DIVERGED else StepTooLarge)(**here, detail=why)  # type: ignore[arg-type]
-        q, v = (recorder := grid.recorder).samples[-1].reshape(2, n) + steady(run.clock + run.length)
-        touching = forced and recorder.marks[0]["touching"] == 1 and motion.tip(q) > motion.gap
-        regime, time = CONTACT if touching else OUTSIDE, run.last * period + run.clock_end
+        q, v = (recorder := grid.recorder).samples[-1].reshape(2, n) + steady(plan.clock + plan.length)
+        touching = forced and recorder.marks[0]["touching"] == 1 and numbers.tip(q) > numbers.gap
+        regime, time = CONTACT if touching else OUTSIDE, plan.last * period + plan.clock_end
         end = State(displacement=q, velocity=v, time=time, regime=regime)
-        recorder = _separated(recorder, run, order, period, under_way)
+        recorder = _separated(recorder, plan, order, period, under_way)
         return trajectory_of(
-            recorder, run, end, oscillator, evaluations=grid.steps, deviations=self.deviations
+            recorder, plan, end, oscillator, evaluations=grid.steps, deviations=self.deviations
         )

@@ -56,8 +56,8 @@ from typing import ClassVar, NamedTuple
 import numpy as np
 
 from beam.parameters import require_within
-from contact.flight.modal_flow import push_on
-from contact.flight.motion import Motion
+from contact.flight.numbers import Numbers
+from contact.flight.tip import push_on
 from contact.integrators.fixed_step import FixedStep, stiffness_at
 from contact.integrators.grid import (
     DONE,
@@ -87,7 +87,7 @@ quadratically.  Under any other law a step that leaves the bracket halves it.  W
 halves the bracket or the residual: 130 for the digits of both."""
 
 
-class AlphaNumbers(NamedTuple):
+class AlphaParameters(NamedTuple):
     """The numbers of a member of the family [1]."""
 
     alpha_m: float
@@ -103,9 +103,9 @@ class AlphaNumbers(NamedTuple):
         return 1.0 - 2.0 * alpha_m, 1.0 - 2.0 * alpha_f, g, 4.0 * beta - 2.0 * gamma - late, g + late
 
 
-def limit(numbers: AlphaNumbers) -> float:
+def limit(parameters: AlphaParameters) -> float:
     """Largest stable h omega without damping for eta = 1/2 [1]; infinite if all are stable, 0 if none is."""
-    a, f, g, b, _e = numbers.letters()
+    a, f, g, b, _e = parameters.letters()
     constant = np.array([4.0 * a, 4.0, 0.0, 4.0 * (g + f - a)])
     slope = np.array([f * b, b + f * g, g + f, g * (b + f * g + f * f)])
     falls = slope < -MARGIN
@@ -114,9 +114,9 @@ def limit(numbers: AlphaNumbers) -> float:
     return math.sqrt(np.min(-constant[falls] / slope[falls], initial=math.inf))
 
 
-def stable(numbers: AlphaNumbers, size: np.ndarray, decay: np.ndarray) -> np.ndarray:
+def stable(parameters: AlphaParameters, size: np.ndarray, decay: np.ndarray) -> np.ndarray:
     """Whether a mode with h omega = `size` and h c = `decay` does not grow, elementwise."""
-    a, f, g, b, e = numbers.letters()
+    a, f, g, b, e = parameters.letters()
     y, x = size**2, 2.0 * decay
     p3, p2, p1 = 4.0 * a + f * (b * y + x * g), 4.0 + b * y + x * g + f * (e * y + x), (e + f) * y + x
     scale = MARGIN * (4.0 + y + x) * (1.0 + abs(b) + abs(e) + abs(f))
@@ -125,10 +125,10 @@ def stable(numbers: AlphaNumbers, size: np.ndarray, decay: np.ndarray) -> np.nda
 
 
 @kernel
-def force_at_end(motion, depth, rate, b, g):
+def force_at_end(numbers, depth, rate, b, g):
     """The contact force N with N = N(depth - b N, rate - g N), for a law that pulls only while the tip
     leaves: the pull is then weaker than rate/g, which would stop the tip."""
-    start = contact_force(motion, depth, rate)
+    start = contact_force(numbers, depth, rate)
     if start == 0.0:
         return 0.0
     low, high = (0.0, start) if start > 0.0 else (rate / g, 0.0)
@@ -136,12 +136,12 @@ def force_at_end(motion, depth, rate, b, g):
         high = depth / b
     force, before = 0.0, math.inf
     for _ in range(ITERATIONS):
-        residual = force - contact_force(motion, depth - b * force, rate - g * force)
+        residual = force - contact_force(numbers, depth - b * force, rate - g * force)
         low, high = (low, force) if residual > 0.0 else (force, high)
-        stiffness, damping = contact_tangent(motion, depth - b * force, rate - g * force)
+        stiffness, damping = contact_tangent(numbers, depth - b * force, rate - g * force)
         new = force - residual / (1.0 + b * stiffness + g * damping)
         if start > 0.0 and new >= high:
-            if high - low <= CLOSED * high or contact_force(motion, LEAST_DEPTH, rate - g * high) >= high:
+            if high - low <= CLOSED * high or contact_force(numbers, LEAST_DEPTH, rate - g * high) >= high:
                 return high
         if not low <= new <= high or (start < 0.0 and abs(residual) > 0.5 * before):
             new = 0.5 * (low + high)
@@ -154,65 +154,65 @@ def force_at_end(motion, depth, rate, b, g):
 class AlphaState(NamedTuple):
     """The numbers of the method, and per mode a, f and D, each of shape (n_modes,)."""
 
-    numbers: AlphaNumbers
+    parameters: AlphaParameters
     a: np.ndarray
     f: np.ndarray
     inertia: np.ndarray
 
 
-def alpha_state(numbers: AlphaNumbers, grid: Grid) -> AlphaState:
+def alpha_state(parameters: AlphaParameters, grid: Grid) -> AlphaState:
     """The state of the method before its first step, where a = f."""
-    (alpha_m, alpha_f, beta, gamma, _eta), h, start = numbers, grid.step, accelerations(grid)
-    implicit = gamma * (h * grid.motion.decay) + beta * (h * grid.motion.omega) ** 2
-    return AlphaState(numbers, start, start.copy(), 1.0 - alpha_m + (1.0 - alpha_f) * implicit)
+    (alpha_m, alpha_f, beta, gamma, _eta), h, start = parameters, grid.step, accelerations(grid)
+    implicit = gamma * (h * grid.numbers.decay) + beta * (h * grid.numbers.omega) ** 2
+    return AlphaState(parameters, start, start.copy(), 1.0 - alpha_m + (1.0 - alpha_f) * implicit)
 
 
 @inlined
 def predict(grid, alpha, sine):
     """The step without a contact force at its end; `sine` is sin(w t)."""
-    numbers, a, f, inertia = alpha
-    h, q, v, new = grid.step, grid.q, grid.v, 1.0 - numbers.alpha_f
+    parameters, a, f, inertia = alpha
+    h, q, v, new = grid.step, grid.q, grid.v, 1.0 - parameters.alpha_f
     for k in range(q.size):
-        q[k] += h * v[k] + h * h * (numbers.eta - numbers.beta) * a[k]
-        v[k] += h * (1.0 - numbers.gamma) * a[k]
-        rest = numbers.alpha_f * f[k] - numbers.alpha_m * a[k]
+        q[k] += h * v[k] + h * h * (parameters.eta - parameters.beta) * a[k]
+        v[k] += h * (1.0 - parameters.gamma) * a[k]
+        rest = parameters.alpha_f * f[k] - parameters.alpha_m * a[k]
         a[k] = (rest + new * force_in_flight(grid, k, sine, q, v)) / inertia[k]
-        q[k] += numbers.beta * h * h * a[k]
-        v[k] += numbers.gamma * h * a[k]
+        q[k] += parameters.beta * h * h * a[k]
+        v[k] += parameters.gamma * h * a[k]
 
 
 @kernel
 def generalised_alpha(grid, prepared):
     """Steps from the grid point reached; prepared: the `AlphaState`, and sum phi^2/D [1/kg]."""
     alpha, mobility = prepared
-    numbers, a, f, inertia = alpha
-    progress, h, q, v, motion = grid.progress[0], grid.step, grid.q, grid.v, grid.motion
-    new, b, g = 1.0 - numbers.alpha_f, numbers.beta * h * h, numbers.gamma * h
+    parameters, a, f, inertia = alpha
+    progress, h, q, v, numbers = grid.progress[0], grid.step, grid.q, grid.v, grid.numbers
+    new, b, g = 1.0 - parameters.alpha_f, parameters.beta * h * h, parameters.gamma * h
     while progress.step < grid.steps:
-        sine = math.sin(motion.drive * (grid.clock + (progress.step + 1) * h))
+        sine = math.sin(numbers.drive * (grid.clock + (progress.step + 1) * h))
         predict(grid, alpha, sine)
-        depth, rate = tip_of(motion, q, v)
-        push = force_at_end(motion, depth, rate, b * new * mobility, g * new * mobility)
+        depth, rate = tip_of(numbers, q, v)
+        push = force_at_end(numbers, depth, rate, b * new * mobility, g * new * mobility)
         for k in range(q.size):
-            jump = new * push_on(motion, k, push) / inertia[k]
+            jump = new * push_on(numbers, k, push) / inertia[k]
             a[k] += jump
             q[k] += b * jump
             v[k] += g * jump
-            f[k] = force_in_flight(grid, k, sine, q, v) + push_on(motion, k, push)
-        depth, _rate = tip_of(motion, q, v)
+            f[k] = force_in_flight(grid, k, sine, q, v) + push_on(numbers, k, push)
+        depth, _rate = tip_of(numbers, q, v)
         status = end_contact_step(grid, None, 1, depth, depth < 0.0, None)
         if status != DONE:
             return status
     return DONE
 
 
-def chung_hulbert(rho: float) -> AlphaNumbers:
+def chung_hulbert(rho: float) -> AlphaParameters:
     """The numbers of order 2 that damp infinite frequencies by the factor `rho` a step, and low frequencies
     least (Chung and Hulbert 1993)."""
     require_within("rho", rho, "[1]", low=0, high=1)
     alpha_m, alpha_f = (2.0 * rho - 1.0) / (rho + 1.0), rho / (rho + 1.0)
     gamma = 0.5 + (1.0 - rho) / (1.0 + rho)
-    return AlphaNumbers(alpha_m=alpha_m, alpha_f=alpha_f, beta=0.25 * (0.5 + gamma) ** 2, gamma=gamma)
+    return AlphaParameters(alpha_m=alpha_m, alpha_f=alpha_f, beta=0.25 * (0.5 + gamma) ** 2, gamma=gamma)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -267,19 +267,19 @@ class GeneralisedAlpha(FixedStep):
         )
 
     @property
-    def numbers(self) -> AlphaNumbers:
+    def parameters(self) -> AlphaParameters:
         """alpha_m, alpha_f, beta and gamma, with eta = 1/2."""
-        return AlphaNumbers(self.alpha_m, self.alpha_f, self.beta, self.gamma)
+        return AlphaParameters(self.alpha_m, self.alpha_f, self.beta, self.gamma)
 
-    def critical_stiffness(self, motion: Motion) -> float:
+    def critical_stiffness(self, numbers: Numbers) -> float:
         """Contact stiffness at which the highest frequency reaches the limit without damping; below zero if a
         mode is beyond the limit [N/m]."""
-        if not np.all(stable(self.numbers, self.step * motion.omega, self.step * motion.decay)):
+        if not np.all(stable(self.parameters, self.step * numbers.omega, self.step * numbers.decay)):
             return -1.0
-        largest = limit(self.numbers)
-        return math.inf if largest == math.inf else stiffness_at(motion, (largest / self.step) ** 2)
+        largest = limit(self.parameters)
+        return math.inf if largest == math.inf else stiffness_at(numbers, (largest / self.step) ** 2)
 
     def prepare(self, grid: Grid) -> tuple[AlphaState, float]:
         """The state before the first step, and sum phi^2/D [1/kg]."""
-        alpha = alpha_state(self.numbers, grid)
-        return alpha, grid.motion.mobility(alpha.inertia)
+        alpha = alpha_state(self.parameters, grid)
+        return alpha, grid.numbers.mobility(alpha.inertia)

@@ -21,8 +21,8 @@ import numpy as np
 
 from contact import touch
 from contact.engine.recorder import Recorder, put_sample, sample_due
-from contact.flight.modal_flow import push_on, tip_sum
-from contact.flight.motion import DECAY, SQUARE, Motion
+from contact.flight.numbers import DECAY, SQUARE, Numbers
+from contact.flight.tip import push_on, tip_sum
 from contact.machine.compiled import inlined, kernel, part
 from contact.touch.passage import add_exchange, close_touch, is_full, open_touch
 from contact.trajectory import IMPACT
@@ -44,7 +44,7 @@ class Grid(NamedTuple):
     """A run under way on its grid."""
 
     progress: np.ndarray  # `PROGRESS`, shape (1,)
-    motion: Motion
+    numbers: Numbers
     push: np.ndarray  # P [N kg^-0.5], shape (n_modes,)
     constant: np.ndarray  # g [N kg^-0.5], shape (n_modes,)
     step: float  # h [s]
@@ -62,45 +62,45 @@ class Grid(NamedTuple):
 
 
 @inlined
-def tip_of(motion, q, v):
+def tip_of(numbers, q, v):
     """Penetration d [m] and its rate [m/s]."""
-    return tip_sum(motion, -motion.gap, q), tip_sum(motion, 0.0, v)
+    return tip_sum(numbers, -numbers.gap, q), tip_sum(numbers, 0.0, v)
 
 
 @inlined
 def force_in_flight(grid, k, sine, q, v):
     """f of mode `k`; `sine` is sin(w t)."""
-    modes = grid.motion.modes
+    modes = grid.numbers.modes
     return grid.constant[k] + grid.push[k] * sine - modes[DECAY, k] * v[k] - modes[SQUARE, k] * q[k]
 
 
 @inlined
-def contact_force(motion, depth, rate):
+def contact_force(numbers, depth, rate):
     """Force N of the stop on the tip [N]; zero for impact laws."""
-    return touch.force(motion, depth, rate) if depth > 0.0 else 0.0
+    return touch.force(numbers, depth, rate) if depth > 0.0 else 0.0
 
 
 @inlined
-def contact_tangent(motion, depth, rate):
+def contact_tangent(numbers, depth, rate):
     """dN/dd [N/m] and dN/dd' [N s/m], zero off the stop."""
-    return touch.stiffness(motion, depth, rate) if depth > 0.0 else (0.0, 0.0)
+    return touch.stiffness(numbers, depth, rate) if depth > 0.0 else (0.0, 0.0)
 
 
 @kernel
-def first_tangent(motion):
+def first_tangent(numbers):
     """dN/dd [N/m] and dN/dd' [N s/m] at the first touch, of a tip at rest; zero for impact laws."""
-    return contact_tangent(motion, LEAST_DEPTH, 0.0)
+    return contact_tangent(numbers, LEAST_DEPTH, 0.0)
 
 
 @kernel
 def accelerations(grid):
     """The modal accelerations at the first grid point, shape (n_modes,)."""
-    q, v, motion = grid.q, grid.v, grid.motion
-    sine = math.sin(motion.drive * grid.clock)
-    depth, rate = tip_of(motion, q, v)
-    push, found = contact_force(motion, depth, rate), np.empty(q.size)
+    q, v, numbers = grid.q, grid.v, grid.numbers
+    sine = math.sin(numbers.drive * grid.clock)
+    depth, rate = tip_of(numbers, q, v)
+    push, found = contact_force(numbers, depth, rate), np.empty(q.size)
     for k in range(q.size):
-        found[k] = force_in_flight(grid, k, sine, q, v) + push_on(motion, k, push)
+        found[k] = force_in_flight(grid, k, sine, q, v) + push_on(numbers, k, push)
     return found
 
 
@@ -135,7 +135,7 @@ def make_end_of_step(interpolate: Interpolate, write: WriteContact) -> Callable[
         progress.due = clock[marks.sampled] if marks.sampled < clock.size else math.inf
         if not abs(depth) < UNBOUNDED:
             return DIVERGED
-        stiffness, _damping = contact_tangent(grid.motion, depth, 0.0)
+        stiffness, _damping = contact_tangent(grid.numbers, depth, 0.0)
         if stiffness > grid.critical:
             return TOO_LARGE
         return FULL if is_full(recorder) else DONE
@@ -216,7 +216,7 @@ def cubic_interpolation(grid, _method, x, h, _with_force):
         a, b = h * grid.v0[k] - rise, h * grid.v[k] - rise
         grid.q_at[k] = z * grid.q0[k] + x * grid.q[k] + x * z * (z * a - x * b)
         grid.v_at[k] = (rise + (1.0 - 2.0 * x) * (z * a - x * b) - x * z * (a + b)) / h
-    return tip_of(grid.motion, grid.q_at, grid.v_at)
+    return tip_of(grid.numbers, grid.q_at, grid.v_at)
 
 
 _write_on_cubic = make_contact_writer(cubic_interpolation)
@@ -225,9 +225,9 @@ _write_on_cubic = make_contact_writer(cubic_interpolation)
 @inlined
 def _write_contact(grid, method, span, depth, _report):
     """The trapezoidal rule gives the energy and the impulse that the stop takes."""
-    d0, r0 = tip_of(grid.motion, grid.q0, grid.v0)
-    d1, r1 = tip_of(grid.motion, grid.q, grid.v)
-    f0, f1, half = contact_force(grid.motion, d0, r0), contact_force(grid.motion, d1, r1), 0.5 * span[1]
+    d0, r0 = tip_of(grid.numbers, grid.q0, grid.v0)
+    d1, r1 = tip_of(grid.numbers, grid.q, grid.v)
+    f0, f1, half = contact_force(grid.numbers, d0, r0), contact_force(grid.numbers, d1, r1), 0.5 * span[1]
     given = half * (r0 * f0 + r1 * f1), half * (f0 + f1), max(f0, f1)
     _write_on_cubic(grid, method, span, depth, (d0, given, False))
 

@@ -9,13 +9,14 @@ equations, its limit of stability and its source.  A law that it does not accept
 import math
 from typing import ClassVar
 
-from contact.flight.motion import Motion
+from contact.engine.plan import Plan
+from contact.flight.numbers import Numbers
 from contact.oscillator import ImpactOscillator
-from contact.touch import TOUCHES
-from contact.trajectory import CONTACT, Run, Trajectory
+from contact.touch import LAWS
+from contact.trajectory import CONTACT, Trajectory
 
-LAW_NAMES = {code: file.LAW for code, file in TOUCHES.items()}  # the laws in words, by their codes
-FORCE_LAWS = tuple(code for code, file in TOUCHES.items() if CONTACT in file.REGIMES)
+LAW_NAMES = {code: file.LAW for code, file in LAWS.items()}  # the laws in words, by their codes
+FORCE_LAWS = tuple(code for code, file in LAWS.items() if CONTACT in file.REGIMES)
 """Codes of the laws whose stop pushes with a force; the others are impact laws."""
 
 
@@ -48,13 +49,13 @@ class Integrator:
         """Whether the method knows the contact law with this code."""
         return law in self.laws
 
-    def critical_stiffness(self, motion: Motion) -> float:
+    def critical_stiffness(self, numbers: Numbers) -> float:
         """Largest tangent stiffness of a lasting contact for which the method is stable [N/m].
 
         Infinite for an unconditionally stable method, below zero if it is unstable even in flight.
         """
         return math.inf
 
-    def follow(self, oscillator: ImpactOscillator, run: Run) -> Trajectory:
-        """The motion of `run`; ``contact.simulation.simulate`` has checked the law before."""
+    def follow(self, oscillator: ImpactOscillator, plan: Plan) -> Trajectory:
+        """The motion of `plan`; ``contact.simulation.simulate`` has checked the law before."""
         raise NotImplementedError

@@ -46,10 +46,10 @@ from typing import ClassVar
 import numpy as np
 
 from beam.parameters import require_within
-from contact.flight.modal_flow import push_on
-from contact.flight.motion import DECAY, SQUARE, Motion
+from contact.flight.numbers import DECAY, SQUARE, Numbers
+from contact.flight.tip import push_on
 from contact.integrators.fixed_step import FixedStep
-from contact.integrators.generalised_alpha import AlphaNumbers, AlphaState, alpha_state, predict, stable
+from contact.integrators.generalised_alpha import AlphaParameters, AlphaState, alpha_state, predict, stable
 from contact.integrators.grid import (
     DONE,
     Grid,
@@ -79,7 +79,7 @@ def path_with_corner(grid, corner, x, h, with_force):
             grid.q_at[k], grid.v_at[k] = grid.q0[k] + x * h * grid.v0[k], grid.v0[k]
         else:
             grid.q_at[k], grid.v_at[k] = grid.q[k] - (1.0 - x) * h * grid.v[k], grid.v[k]
-    return tip_of(grid.motion, grid.q_at, grid.v_at)
+    return tip_of(grid.numbers, grid.q_at, grid.v_at)
 
 
 @inlined
@@ -90,10 +90,10 @@ def write_percussion(grid, corner, span, _depth, push):
     marks.touching = 1 if push > 0.0 else 0
     if push > 0.0:
         _d, before = path_with_corner(grid, corner, corner, h, True)
-        _d, after = tip_of(grid.motion, grid.q_at, grid.v)
+        _d, after = tip_of(grid.numbers, grid.q_at, grid.v)
         if opens:
             open_touch(recorder, 0, grid.first, start + corner * h, before, IMPACT, grid.q_at, grid.v_at)
-        loss = 0.5 * (before - after) * (before + after) / grid.motion.inverse_mass
+        loss = 0.5 * (before - after) * (before + after) / grid.numbers.inverse_mass
         add_exchange(recorder, 0, loss, push, math.nan)
         close_touch(recorder, 0, grid.first, start + corner * h, after, grid.q_at, grid.v)
         marks.touching = 1
@@ -102,38 +102,38 @@ def write_percussion(grid, corner, span, _depth, push):
 end_step = make_end_of_step(path_with_corner, write_percussion)
 
 
-def before_percussions(numbers: AlphaNumbers, grid: Grid) -> tuple[AlphaState, float]:
+def before_percussions(parameters: AlphaParameters, grid: Grid) -> tuple[AlphaState, float]:
     """The state before the first step, and sum E phi^2 [1/kg] (``nonsmooth_generalised_alpha``)."""
-    alpha, y = alpha_state(numbers, grid), grid.step**2 * grid.motion.row(SQUARE)
-    alpha_m, alpha_f, beta, gamma, eta = numbers
+    alpha, y = alpha_state(parameters, grid), grid.step**2 * grid.numbers.row(SQUARE)
+    alpha_m, alpha_f, beta, gamma, eta = parameters
     share = 1.0 - alpha_m + (1.0 - alpha_f) * (beta - gamma * eta) * y
-    return alpha, grid.motion.mobility(alpha.inertia / share)
+    return alpha, grid.numbers.mobility(alpha.inertia / share)
 
 
 @kernel
 def through_percussions(grid, prepared):
     """Steps from the grid point reached, with `prepared` by `before_percussions`."""
     alpha, mobility = prepared
-    numbers, a, f, inertia = alpha
-    progress, h, q, v, motion = grid.progress[0], grid.step, grid.q, grid.v, grid.motion
-    modes, new, eta = motion.modes, 1.0 - numbers.alpha_f, numbers.eta
+    parameters, a, f, inertia = alpha
+    progress, h, q, v, numbers = grid.progress[0], grid.step, grid.q, grid.v, grid.numbers
+    modes, new, eta = numbers.modes, 1.0 - parameters.alpha_f, parameters.eta
     while progress.step < grid.steps:
-        sine = math.sin(motion.drive * (grid.clock + (progress.step + 1) * h))
-        depth, before = tip_of(motion, q, v)
+        sine = math.sin(numbers.drive * (grid.clock + (progress.step + 1) * h))
+        depth, before = tip_of(numbers, q, v)
         predict(grid, alpha, sine)
-        _d, after = tip_of(motion, q, v)
+        _d, after = tip_of(numbers, q, v)
         push = 0.0
         if depth + 0.5 * h * before >= 0.0:  # under Newton's law, the only law of methods by percussions
-            push = max(0.0, (after + restitution_at(motion, before)[0] * before) / mobility)
+            push = max(0.0, (after + restitution_at(numbers, before)[0] * before) / mobility)
         for k in range(q.size if push > 0.0 else 0):
-            jump = push_on(motion, k, push)
+            jump = push_on(numbers, k, push)
             change = -new * (modes[DECAY, k] + eta * h * modes[SQUARE, k]) * jump / inertia[k]
             a[k] += change
-            q[k] += numbers.beta * h * h * change + eta * h * jump
-            v[k] += numbers.gamma * h * change + jump
-        for k in range(q.size if numbers.alpha_f != 0.0 else 0):
+            q[k] += parameters.beta * h * h * change + eta * h * jump
+            v[k] += parameters.gamma * h * change + jump
+        for k in range(q.size if parameters.alpha_f != 0.0 else 0):
             f[k] = force_in_flight(grid, k, sine, q, v)
-        depth, _rate = tip_of(motion, q, v)
+        depth, _rate = tip_of(numbers, q, v)
         status = end_step(grid, 1.0 - eta, 1, depth, push == 0.0, push)
         if status != DONE:
             return status
@@ -157,17 +157,17 @@ class MoreauJean(FixedStep):
         super().__post_init__()
         require_within("theta", self.theta, "[1]", low=0, high=1)
 
-    def critical_stiffness(self, motion: Motion) -> float:
+    def critical_stiffness(self, numbers: Numbers) -> float:
         """Infinite, or below zero if a mode grows in flight [N/m]; the method has no contact stiffness."""
-        holds = stable(self.numbers, self.step * motion.omega, self.step * motion.decay)
+        holds = stable(self.parameters, self.step * numbers.omega, self.step * numbers.decay)
         return math.inf if np.all(holds) else -1.0
 
     @property
-    def numbers(self) -> AlphaNumbers:
+    def parameters(self) -> AlphaParameters:
         """alpha_m = alpha_f = 0, beta = theta^2, gamma = eta = theta."""
         theta = float(self.theta)
-        return AlphaNumbers(0.0, 0.0, theta**2, theta, theta)
+        return AlphaParameters(0.0, 0.0, theta**2, theta, theta)
 
     def prepare(self, grid: Grid) -> object:
         """The state before the first step, and sum phi^2/D [1/kg]."""
-        return before_percussions(self.numbers, grid)
+        return before_percussions(self.parameters, grid)

@@ -52,7 +52,7 @@ from numpy.typing import ArrayLike
 
 from beam.parameters import InvalidValue
 from contact.flight.modal_flow import flow_over
-from contact.flight.motion import DAMPED, Motion, motion_of
+from contact.flight.numbers import DAMPED, Numbers, numbers_of
 from contact.integrators.fixed_step import FixedStep
 from contact.integrators.grid import Grid, first_tangent
 from contact.integrators.splitting_step import Composition, split_steps, sub_flows
@@ -77,13 +77,13 @@ COMPOSITIONS = {
 
 
 def step_matrix(
-    motion: Motion, composition: Composition, step: float, stiffness: ArrayLike, damping: float = 0.0
+    numbers: Numbers, composition: Composition, step: float, stiffness: ArrayLike, damping: float = 0.0
 ) -> np.ndarray:
     """The map (u, v) -> (u, v) of one step with the contact closed, shape (..., 2 n_modes, 2 n_modes).
 
     `stiffness` may be an array, of the shape (...) [N/m].
     """
-    n, phi, rate = motion.size, motion.phi, damping * motion.inverse_mass
+    n, phi, rate = numbers.size, numbers.phi, damping * numbers.inverse_mass
     stiff = np.asarray(stiffness, dtype=float)[..., None]
     upper = np.broadcast_to(np.eye(n, 2 * n), (*stiff.shape[:-1], n, 2 * n))
     lower = np.broadcast_to(np.eye(n, 2 * n, n), upper.shape)
@@ -92,22 +92,22 @@ def step_matrix(
         pull = acts * (stiff * (phi @ upper) + damping * (phi @ lower))
         lower = lower - phi[:, None] * pull[..., None, :]
         if j < composition.flows.size:
-            a, b, c, d = flow_over(motion, composition.flows[j] * step)[:, :4, None].swapaxes(0, 1)
+            a, b, c, d = flow_over(numbers, composition.flows[j] * step)[:, :4, None].swapaxes(0, 1)
             upper, lower = a * upper + b * lower, c * upper + d * lower
     return np.concatenate([upper, lower], axis=-2)
 
 
 def spectral_radius(
-    motion: Motion, composition: Composition, step: float, stiffness: ArrayLike, damping: float = 0.0
+    numbers: Numbers, composition: Composition, step: float, stiffness: ArrayLike, damping: float = 0.0
 ) -> np.ndarray:
     """Largest modulus of an eigenvalue of `step_matrix`, of the shape of `stiffness`."""
-    speed = np.where(motion.omega > 0, motion.omega, 1.0 / step)
-    scale = np.concatenate([speed, np.ones(motion.size)])  # (omega u, v): the flow is then a rotation
-    matrix = step_matrix(motion, composition, step, stiffness, damping)
+    speed = np.where(numbers.omega > 0, numbers.omega, 1.0 / step)
+    scale = np.concatenate([speed, np.ones(numbers.size)])  # (omega u, v): the flow is then a rotation
+    matrix = step_matrix(numbers, composition, step, stiffness, damping)
     return np.abs(np.linalg.eigvals(scale[:, None] * matrix / scale)).max(axis=-1)
 
 
-def first_instability(motion: Motion, composition: Composition, step: float, damping: float = 0.0) -> float:
+def first_instability(numbers: Numbers, composition: Composition, step: float, damping: float = 0.0) -> float:
     """The lowest contact stiffness at which a lasting contact is unstable [N/m].
 
     A root of det(M + I) or det(M - I) counts if the step is unstable just beyond it, since rounding may add a
@@ -115,14 +115,14 @@ def first_instability(motion: Motion, composition: Composition, step: float, dam
     """
     degree = composition.flows.size
     nodes = 0.5 - 0.5 * np.cos(np.pi * (np.arange(degree + 1) + 0.5) / (degree + 1))
-    width, passages = 4.0 * degree**2 / (step**2 * motion.inverse_mass), []
+    width, passages = 4.0 * degree**2 / (step**2 * numbers.inverse_mass), []
 
     def unstable(stiffness: ArrayLike) -> np.ndarray:
-        return spectral_radius(motion, composition, step, stiffness, damping) > 1.0 + EXCEEDS
+        return spectral_radius(numbers, composition, step, stiffness, damping) > 1.0 + EXCEEDS
 
     def roots(sign: float, width: float) -> np.ndarray:
-        matrices = step_matrix(motion, composition, step, width * nodes, damping)
-        values = np.linalg.det(matrices + sign * np.eye(2 * motion.size))
+        matrices = step_matrix(numbers, composition, step, width * nodes, damping)
+        values = np.linalg.det(matrices + sign * np.eye(2 * numbers.size))
         found = np.polynomial.Polynomial.fit(nodes, values, degree, domain=[0.0, 1.0]).roots()
         return width * found.real[(np.abs(found.imag) <= 1e-9 * np.abs(found)) & (found.real > 0.0)]
 
@@ -133,8 +133,8 @@ def first_instability(motion: Motion, composition: Composition, step: float, dam
             if unstable((1.0 + JUST_BEYOND) * root):
                 passages.append(root)
     first = min(passages, default=10.0 * width)
-    under = motion.omega > 0.5 * motion.decay
-    decades = SEARCH_BEYOND_PI if np.any(motion.row(DAMPED)[under] * step >= math.pi) else SEARCH
+    under = numbers.omega > 0.5 * numbers.decay
+    decades = SEARCH_BEYOND_PI if np.any(numbers.row(DAMPED)[under] * step >= math.pi) else SEARCH
     values = first * 10.0 ** np.linspace(-decades, 0.0, decades * EACH + 1)
     found = np.flatnonzero(unstable(values[:-1]))
     if found.size == 0:
@@ -149,8 +149,8 @@ def first_instability(motion: Motion, composition: Composition, step: float, dam
 @lru_cache(maxsize=256)
 def _limit(rows: tuple[tuple[float, ...], ...], order: int, step: float, damping: float) -> float:
     """`first_instability`, cached since the search takes some hundredths of a second."""
-    motion = motion_of(*np.array(rows), law=LinearContact(stiffness=1.0), gap=0.0)
-    return first_instability(motion, COMPOSITIONS[order], step, damping)
+    numbers = numbers_of(*np.array(rows), law=LinearContact(stiffness=1.0), gap=0.0)
+    return first_instability(numbers, COMPOSITIONS[order], step, damping)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -170,16 +170,16 @@ class Splitting(FixedStep):
         if self.order not in COMPOSITIONS:
             raise InvalidValue(f"order is {self.order!r}; it must be 2 or 4")
 
-    def critical_stiffness(self, motion: Motion) -> float:
+    def critical_stiffness(self, numbers: Numbers) -> float:
         """Lowest stiffness of a lasting contact at which a step is unstable [N/m].
 
         It is a tangent stiffness, with the damping of the first touch.  Under Hunt and Crossley's law the
         damping grows with the depth; it raises the limit and is left out.
         """
-        rows = tuple(tuple(row) for row in (motion.omega, motion.decay, motion.phi))
-        return _limit(rows, self.order, self.step, first_tangent(motion)[1])
+        rows = tuple(tuple(row) for row in (numbers.omega, numbers.decay, numbers.phi))
+        return _limit(rows, self.order, self.step, first_tangent(numbers)[1])
 
     def prepare(self, grid: Grid) -> tuple[Composition, np.ndarray]:
         """The composition, and its sub-flows over a step."""
         composition = COMPOSITIONS[self.order]
-        return composition, sub_flows(grid.motion, composition, self.step)
+        return composition, sub_flows(grid.numbers, composition, self.step)

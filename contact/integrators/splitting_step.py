@@ -30,8 +30,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from contact.flight.modal_flow import at_tip, flow_over, propagate, push_on, tip_bound, tip_sum
-from contact.flight.motion import LOAD, OMEGA
+from contact.flight.modal_flow import flow_over, propagate
+from contact.flight.numbers import LOAD, OMEGA
+from contact.flight.tip import at_tip, push_on, tip_bound, tip_sum
 from contact.integrators.grid import (
     DONE,
     contact_force,
@@ -56,57 +57,57 @@ class Composition(NamedTuple):
 
 
 @kernel
-def sub_flows(motion, composition, length):
+def sub_flows(numbers, composition, length):
     """The sub-flows of a step of `length` [s], shape (stages, n_modes + 1, 6).
 
     A row holds the matrix of a mode by rows and its drift under a constant load.  The last row holds the
     cosine and sine of the drive's phase over the sub-flow.
     """
-    n = motion.size
+    n = numbers.size
     flows = np.zeros((composition.flows.size, n + 1, 6))
     for j in range(composition.flows.size):
         t = composition.flows[j] * length
-        flows[j, :n] = flow_over(motion, t)
-        flows[j, n, 0], flows[j, n, 1] = math.cos(motion.drive * t), math.sin(motion.drive * t)
+        flows[j, :n] = flow_over(numbers, t)
+        flows[j, n, 0], flows[j, n, 1] = math.cos(numbers.drive * t), math.sin(numbers.drive * t)
     return flows
 
 
 @kernel
-def tip_at(motion, u, clock):
+def tip_at(numbers, u, clock):
     """Penetration of the tip [m] at a time since a strobe [s], sine and cosine of the drive's phase there."""
-    sine, cosine = math.sin(motion.drive * clock), math.cos(motion.drive * clock)
-    steady = motion.level + motion.tip_sine * sine + motion.tip_cosine * cosine
-    return tip_sum(motion, steady, u), sine, cosine
+    sine, cosine = math.sin(numbers.drive * clock), math.cos(numbers.drive * clock)
+    steady = numbers.level + numbers.tip_sine * sine + numbers.tip_cosine * cosine
+    return tip_sum(numbers, steady, u), sine, cosine
 
 
 @kernel
-def tip_rate(motion, v, sine, cosine):
+def tip_rate(numbers, v, sine, cosine):
     """Rate of the penetration [m/s], with `sine` and `cosine` of the drive's phase."""
-    return tip_sum(motion, motion.drive * (motion.tip_sine * cosine - motion.tip_cosine * sine), v)
+    return tip_sum(numbers, numbers.drive * (numbers.tip_sine * cosine - numbers.tip_cosine * sine), v)
 
 
 @kernel
-def kick(motion, tip, v, length):
+def kick(numbers, tip, v, length):
     """The contact acts for a time `length` [s] on velocities alone.
 
     `tip`: penetration, sine and cosine of the drive's phase.  Returns the energy it has taken [J], its
     impulse [N s] and its force [N].
     """
     depth, sine, cosine = tip
-    rate = tip_rate(motion, v, sine, cosine)
-    force = contact_force(motion, depth, rate)
+    rate = tip_rate(numbers, v, sine, cosine)
+    force = contact_force(numbers, depth, rate)
     if force == 0.0:
         return 0.0, 0.0, 0.0
-    _stiffness, damping = contact_tangent(motion, depth, rate)
-    x = damping * motion.inverse_mass * length
+    _stiffness, damping = contact_tangent(numbers, depth, rate)
+    x = damping * numbers.inverse_mass * length
     impulse = force * length * (-math.expm1(-x) / x if x != 0.0 else 1.0)
     for k in range(v.size):
-        v[k] += push_on(motion, k, impulse)
-    return impulse * (rate - 0.5 * motion.inverse_mass * impulse), impulse, force
+        v[k] += push_on(numbers, k, impulse)
+    return impulse * (rate - 0.5 * numbers.inverse_mass * impulse), impulse, force
 
 
 @kernel
-def take_step(motion, split, length, tip, u, v, with_force):
+def take_step(numbers, split, length, tip, u, v, with_force):
     """One step of `length` [s] from `tip` (see `kick`); `split`: the composition, and its sub-flows over it.
 
     Returns the tip at the end, the energy [J] and impulse [N s] taken by the contact with its largest force
@@ -119,7 +120,7 @@ def take_step(motion, split, length, tip, u, v, with_force):
     depth, sine, cosine = tip
     for j in range(stages + 1):
         if depth > 0.0 and (with_force or j < stages):
-            energy, push, force = kick(motion, (depth, sine, cosine), v, composition.kicks[j] * length)
+            energy, push, force = kick(numbers, (depth, sine, cosine), v, composition.kicks[j] * length)
             loss, impulse, largest = loss + energy, impulse + push, max(largest, force)
             touched = True
         if j == stages:
@@ -127,58 +128,58 @@ def take_step(motion, split, length, tip, u, v, with_force):
         flow = flows[j]
         c, s = flow[n, 0], flow[n, 1]
         sine, cosine = c * sine + s * cosine, c * cosine - s * sine
-        depth = motion.level + motion.tip_sine * sine + motion.tip_cosine * cosine
+        depth = numbers.level + numbers.tip_sine * sine + numbers.tip_cosine * cosine
         for k in range(n):
             uk, vk = u[k], v[k]
             u[k] = flow[k, 0] * uk + flow[k, 1] * vk + flow[k, 4]
             v[k] = flow[k, 2] * uk + flow[k, 3] * vk + flow[k, 5]
-            depth += at_tip(motion, k, u[k])
+            depth += at_tip(numbers, k, u[k])
     return (depth, sine, cosine), (loss, impulse, largest), touched
 
 
 @inlined
 def shorter_step(grid, split, x, h, with_force):
     """The state after the fraction `x` of a step: that of a shorter step (``grid.Interpolate``)."""
-    motion, u, v = grid.motion, grid.q_at, grid.v_at
+    numbers, u, v = grid.numbers, grid.q_at, grid.v_at
     for k in range(u.size):
         u[k], v[k] = grid.q0[k], grid.v0[k]
-    tip = tip_at(motion, u, grid.clock + grid.progress[0].step * grid.step)
-    shorter = split[0], sub_flows(motion, split[0], x * h)
-    (depth, sine, cosine), _given, _touched = take_step(motion, shorter, x * h, tip, u, v, with_force)
-    return depth, tip_rate(motion, v, sine, cosine)
+    tip = tip_at(numbers, u, grid.clock + grid.progress[0].step * grid.step)
+    shorter = split[0], sub_flows(numbers, split[0], x * h)
+    (depth, sine, cosine), _given, _touched = take_step(numbers, shorter, x * h, tip, u, v, with_force)
+    return depth, tip_rate(numbers, v, sine, cosine)
 
 
 end_split_step = make_end_of_step(shorter_step, make_contact_writer(shorter_step))
 
 
 @kernel
-def clear_steps(motion, depth, u, v, h):
+def clear_steps(numbers, depth, u, v, h):
     """Number of steps of length h for which the tip surely stays off the stop."""
-    speed = motion.drive * motion.amplitude
+    speed = numbers.drive * numbers.amplitude
     for k in range(u.size):
-        if motion.modes[LOAD, k] != 0.0:
+        if numbers.modes[LOAD, k] != 0.0:
             return 0.0
-        speed += tip_bound(motion, k, v[k], motion.modes[OMEGA, k] * u[k])
+        speed += tip_bound(numbers, k, v[k], numbers.modes[OMEGA, k] * u[k])
     return -depth / (speed * h) - 1.0 if speed > 0.0 else math.inf
 
 
 @kernel
 def split_steps(grid, split):
     """Steps from the grid point reached, with deviations from the steady motion; `split`: see `take_step`."""
-    motion, progress, h, u, v = grid.motion, grid.progress[0], grid.step, grid.q, grid.v
-    tip, look = tip_at(motion, u, grid.clock + progress.step * h), progress.step
+    numbers, progress, h, u, v = grid.numbers, grid.progress[0], grid.step, grid.q, grid.v
+    tip, look = tip_at(numbers, u, grid.clock + progress.step * h), progress.step
     while progress.step < grid.steps:
         count, before, given, touched = 1, tip[0], (0.0, 0.0, 0.0), False
         if progress.step >= look and before < 0.0 and grid.recorder.marks[0].touching == 0:
-            count = int(min(clear_steps(motion, before, u, v, h), grid.steps - progress.step))
+            count = int(min(clear_steps(numbers, before, u, v, h), grid.steps - progress.step))
             if count < WORTHWHILE:
                 count, look = 1, progress.step + WORTHWHILE // 2
         if count == 1:
-            tip, given, touched = take_step(motion, split, h, tip, u, v, True)
+            tip, given, touched = take_step(numbers, split, h, tip, u, v, True)
         else:
-            propagate(motion, u, v, count * h, u, v)
+            propagate(numbers, u, v, count * h, u, v)
         if count > 1 or (progress.step + 1) % RENEW == 0:
-            tip = tip_at(motion, u, grid.clock + (progress.step + count) * h)
+            tip = tip_at(numbers, u, grid.clock + (progress.step + count) * h)
         no_contact = tip[0] <= 0.0 and not touched
         status = end_split_step(grid, split, count, tip[0], no_contact, (before, given, touched))
         if status != DONE:

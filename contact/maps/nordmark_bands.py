@@ -23,15 +23,15 @@ from contact.maps.nordmark_orbits import MOST_PERIODS
 
 @dataclass(frozen=True, kw_only=True)
 class Band:
-    """Drive frequencies `lower` to `upper` [Hz] at which p_m, m = `period`, appears at grazing."""
+    """Drive frequencies `lower` to `upper` [Hz] at which p_m, `m`, appears at grazing."""
 
-    period: int
+    m: int
     lower: float
     upper: float
 
 
-def band(
-    period: int,
+def frequency_band(
+    m: int,
     *,
     free_period: float,
     decay_rate: float,
@@ -39,12 +39,12 @@ def band(
     y_line: YLine = "corrected",
     whole_turns: int = 1,
 ) -> Band:
-    """The band of p_m, m = `period` >= 2 drive periods, of a mode with damped `free_period` T [s].
+    """The band of p_m, `m` >= 2 drive periods, of a mode with damped `free_period` T [s].
 
     `decay_rate` is mu [1/s], `restitution` tau [1], and `y_line` and `whole_turns` are as for `NordmarkMap`.
     ValueError is raised for m < 2 and for parameters that `NordmarkMap.from_frequencies` refuses.
     """
-    m = require_whole("period", period, "drive periods", low=2, high=MOST_PERIODS)
+    m = require_whole("m", m, "drive periods", low=2, high=MOST_PERIODS)
     require_within("free_period", free_period, "s", above=0)
     require_whole("whole_turns", whole_turns, "turns", low=0)
 
@@ -70,4 +70,4 @@ def band(
     lower = math.pi
     if m > 2:  # the sign changes before past = pi/2, where sin(theta) < 1; 1e-15 rad is the rounding of theta
         lower = (math.pi + float(brentq(excess_height, 0.0, 0.5 * math.pi, xtol=1e-15))) / (m - 1)
-    return Band(period=m, lower=frequency(lower), upper=frequency(math.pi / m))
+    return Band(m=m, lower=frequency(lower), upper=frequency(math.pi / m))

@@ -25,7 +25,7 @@ import math
 
 from beam.parameters import require, require_within
 from contact.flight.modal_flow import flow_matrix
-from contact.flight.motion import damped_frequency
+from contact.flight.numbers import damped_frequency
 
 
 def coefficients(

@@ -42,14 +42,14 @@ MOST_PERIODS = 100_000  # longest period of an orbit, in drive periods; its stat
 class MaximalOrbit:
     """A periodic solution of the map with its impact at states[0].
 
-    Fields: `map` and `rho`; `period` m; `speed` X = sqrt(x_0), in proportion to the approach speed; `states`,
+    Fields: `map` and `rho`; `m` m; `speed` X = sqrt(x_0), in proportion to the approach speed; `states`,
     shape (m, 2), the (x, y) in order of time; `trace` and `determinant` of the derivative of m steps. All
     pure numbers.
     """
 
     map: NordmarkMap
     rho: float
-    period: int
+    m: int
     speed: float
     states: NDArray[np.float64]
     trace: float
@@ -78,12 +78,12 @@ class MaximalOrbit:
 
 
 class MapFamily:
-    """The orbits p_m of a map, m = `period`, by the formulae of the module's docstring."""
+    """The orbits p_m of a map, `m`, by the formulae of the module's docstring."""
 
-    def __init__(self, nordmark: NordmarkMap, period: int) -> None:
+    def __init__(self, nordmark: NordmarkMap, m: int) -> None:
         require_kind("nordmark", nordmark, NordmarkMap, "a NordmarkMap")
-        self.map, self.period = nordmark, require_whole("period", period, "drive periods", high=MOST_PERIODS)
-        m, alpha, gamma = self.period, nordmark.alpha, nordmark.gamma
+        self.map, self.m = nordmark, require_whole("m", m, "drive periods", high=MOST_PERIODS)
+        m, alpha, gamma = self.m, nordmark.alpha, nordmark.gamma
         p = [0.0, 1.0]  # p_{-1}, p_0, ...
         for _ in range(m):
             p.append(alpha * p[-1] - gamma * p[-2])
@@ -99,7 +99,7 @@ class MapFamily:
 
     def _height(self, k: int) -> tuple[float, float, float]:
         """Coefficients of X^2, X and 1 in x_k, by Eq. (a)."""
-        m, first = self.period, float(self.periodic[(k - 1) % self.period]) - self.b
+        m, first = self.m, float(self.periodic[(k - 1) % self.m]) - self.b
         second = float(self.periodic[(k - 2) % m] - self.periodic[(m - 2) % m])
         return 1.0 - self.map.alpha * first + self.loss * second, -first, self.map.delay_term * first
 
@@ -109,7 +109,7 @@ class MapFamily:
         return self._orbit(root, (self.a * root * root + self.b * (root - self.map.delay_term)) / self.c)
 
     def _orbit(self, root: float, rho: float) -> MaximalOrbit:
-        m, square = self.period, root * root
+        m, square = self.m, root * root
         later = [self._height(k) for k in range(1, m)]
         x = np.array([square] + [a * square + b * root + c for a, b, c in later])
         y = -self.map.gamma * np.roll(x, 1)
@@ -117,7 +117,7 @@ class MapFamily:
         return MaximalOrbit(
             map=self.map,
             rho=rho,
-            period=m,
+            m=m,
             speed=root,
             states=np.column_stack([x, y]),
             trace=-self.last / (2.0 * root) + self.trace_limit,
@@ -147,7 +147,7 @@ class MapFamily:
         at_fold = self.fold()
         if at_fold is None:
             return None
-        ends = [root for k in range(1, self.period) for root in positive_roots(*self._height(k))]
+        ends = [root for k in range(1, self.m) for root in positive_roots(*self._height(k))]
         flip = 1.0 + self.determinant + self.trace_limit
         ends += [self.last / (2.0 * flip)] if flip < 0.0 else []
         marks = [at_fold.speed, *sorted(root for root in ends if root > at_fold.speed), math.inf]
@@ -158,18 +158,18 @@ class MapFamily:
         return None
 
 
-def maximal_period(nordmark: NordmarkMap) -> int:
+def maximal_m(nordmark: NordmarkMap) -> int:
     """The m with pi/m < theta <= pi/(m-1), theta the angle of the map `nordmark`; 0 without oscillation."""
     angle = require_kind("nordmark", nordmark, NordmarkMap, "a NordmarkMap").angle
     return math.floor(math.pi / angle) + 1 if angle > 0.0 else 0
 
 
-def maximal_periods(nordmark: NordmarkMap) -> tuple[int, ...]:
+def coexisting_m(nordmark: NordmarkMap) -> tuple[int, ...]:
     """All m for which p_m of the map `nordmark` is admissible as rho -> 0-.
 
-    They are `maximal_period`, and m + 1 where the bands overlap.
+    They are `maximal_m`, and m + 1 where the bands overlap.
     """
-    m = maximal_period(nordmark)
+    m = maximal_m(nordmark)
     if m == 0:
         return ()
     parts, gamma = MapFamily(nordmark, m), nordmark.gamma

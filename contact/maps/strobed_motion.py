@@ -15,7 +15,7 @@ import numpy as np
 from contact.engine.event_loop import DONE, advance
 from contact.engine.recorder import strobes_only
 from contact.flight.modal_flow import steady_motion
-from contact.flight.motion import COSINE, OFFSET, SINE, Motion, with_drive
+from contact.flight.numbers import COSINE, OFFSET, SINE, Numbers, with_drive
 from contact.machine.compiled import inlined, kernel
 from contact.one_mode.loop import one_mode_periods
 from contact.one_mode.period_table import PeriodTable, period_table, table_at
@@ -25,7 +25,7 @@ from contact.oscillator import ImpactOscillator
 class StrobedSystem(NamedTuple):
     """The numbers of an oscillator for the loops over its drive periods."""
 
-    motion: Motion
+    numbers: Numbers
     table: PeriodTable | None  # of one mode under Newton's law; None for any other oscillator
     mean: np.ndarray  # steady displacements and velocities at a strobe, shape (2 n_modes,)
     weight: np.ndarray  # factors by which the points multiply displacements and velocities, (2 n_modes,)
@@ -33,26 +33,26 @@ class StrobedSystem(NamedTuple):
 
 def strobed_system(oscillator: ImpactOscillator) -> StrobedSystem:
     """The numbers of an oscillator, made once for many orbits."""
-    motion = oscillator.motion()
-    phi = np.where(motion.phi != 0, motion.phi, np.abs(motion.phi).max())
-    slow = motion.drive or 1.0
+    numbers = oscillator.numbers()
+    phi = np.where(numbers.phi != 0, numbers.phi, np.abs(numbers.phi).max())
+    slow = numbers.drive or 1.0
     return StrobedSystem(
-        motion=motion,
-        table=period_table(motion),
-        mean=np.concatenate(steady_motion(motion, 0.0)),
-        weight=np.concatenate([phi, phi / np.where(motion.omega > 0, motion.omega, slow)]),
+        numbers=numbers,
+        table=period_table(numbers),
+        mean=np.concatenate(steady_motion(numbers, 0.0)),
+        weight=np.concatenate([phi, phi / np.where(numbers.omega > 0, numbers.omega, slow)]),
     )
 
 
 @kernel
 def at_amplitude(system, factor):
     """The system at `factor` times its own base amplitude."""
-    motion, n = with_drive(system.motion, factor), system.motion.size
+    numbers, n = with_drive(system.numbers, factor), system.numbers.size
     mean = np.empty(2 * n)
     for k in range(n):
-        mean[k] = motion.modes[OFFSET, k] + motion.modes[COSINE, k]
-        mean[n + k] = motion.drive * motion.modes[SINE, k]
-    return StrobedSystem(motion, table_at(system.table, system.motion, factor), mean, system.weight)
+        mean[k] = numbers.modes[OFFSET, k] + numbers.modes[COSINE, k]
+        mean[n + k] = numbers.drive * numbers.modes[SINE, k]
+    return StrobedSystem(numbers, table_at(system.table, system.numbers, factor), mean, system.weight)
 
 
 @kernel
@@ -92,24 +92,24 @@ def any_periods(system, factors, u, v, runs, points, counts):
             end = at + 1
             while end < counts.size and factors[end] == factors[at]:
                 end += 1
-            add_steady(system.motion, factor - factors[at], u, v)
+            add_steady(system.numbers, factor - factors[at], u, v)
             factor, run.memory0, run.memory1 = factors[at], -1.0, -1.0
             local = at_amplitude(system, factor)
         recorder = strobes_only(points[at:end], counts[at:end])
-        status = advance(local.motion, u, v, runs, run.period + end - at, 0.0, recorder, None)
+        status = advance(local.numbers, u, v, runs, run.stretch + end - at, 0.0, recorder, None)
         for i in range(at, end):
             for k in range(points.shape[1]):
                 points[i, k] = (points[i, k] + local.mean[k]) * system.weight[k]
         at = end
     if status == DONE:
-        add_steady(system.motion, factor - 1.0, u, v)
+        add_steady(system.numbers, factor - 1.0, u, v)
     return status
 
 
 @inlined
-def add_steady(motion, factor, u, v):
+def add_steady(numbers, factor, u, v):
     """Add `factor` times the driven part of the steady motion at a strobe to (u, v)."""
     if factor != 0.0:
-        for k in range(motion.size):
-            u[k] += factor * motion.modes[COSINE, k]
-            v[k] += factor * motion.drive * motion.modes[SINE, k]
+        for k in range(numbers.size):
+            u[k] += factor * numbers.modes[COSINE, k]
+            v[k] += factor * numbers.drive * numbers.modes[SINE, k]

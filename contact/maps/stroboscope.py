@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from beam.parameters import require, require_array, require_whole
-from contact.drive import split_time
 from contact.engine.event_loop import DONE
 from contact.engine.start import failure, start_of, state_of
 from contact.errors import UnresolvedCrossing
+from contact.flight.clock import split_time
 from contact.maps.protocol import Jacobians, StrobedOrbit, amplitude_factors
 from contact.maps.protocol import StrobedMap as StrobedMap
 from contact.maps.strobed_motion import StrobedSystem, strobed_motion, strobed_system
@@ -96,20 +96,20 @@ class StroboscopicMap:
         require_state(self.oscillator, state)
         count = require_whole("count", count, "drive periods", low=0)
         changing = amplitude_factors(factors, count)
-        system, motion, n = self._system, self._system.motion, self.oscillator.n_modes
-        index = round(state.time / motion.period)
-        if index * motion.period != state.time:  # within rounding it may be a strobe nevertheless
-            index, clock = (x.item() for x in split_time(state.time, motion.period))
+        system, numbers, n = self._system, self._system.numbers, self.oscillator.n_modes
+        index = round(state.time / numbers.period)
+        if index * numbers.period != state.time:  # within rounding it may be a strobe nevertheless
+            index, clock = (x.item() for x in split_time(state.time, numbers.period))
             require(clock == 0.0, f"time of the state is {state.time} s; it must be a strobe time n/f")
-        u, v, runs = start_of(motion, state, index, 0.0, steady=(system.mean[:n], system.mean[n:]))
+        u, v, runs = start_of(numbers, state, index, 0.0, steady=(system.mean[:n], system.mean[n:]))
         points, impacts = np.empty((count, 2 * n)), np.empty(count, dtype=np.int64)
         status = strobed_motion(system.table, system, changing, u, v, runs, points, impacts)
         if status != DONE:
             if changing.size:
-                amplitude = self.oscillator.driven.amplitude * changing[int(runs[0]["period"]) - index]
-                motion = self.oscillator.with_amplitude(float(amplitude)).motion()
-            raise failure(status, motion, runs, u, v)
-        end = state_of(motion, runs, u + system.mean[:n], v + system.mean[n:])
+                amplitude = self.oscillator.driven.amplitude * changing[int(runs[0]["stretch"]) - index]
+                numbers = self.oscillator.with_amplitude(float(amplitude)).numbers()
+            raise failure(status, numbers, runs, u, v)
+        end = state_of(numbers, runs, u + system.mean[:n], v + system.mean[n:])
         return StrobedOrbit(end=end, points=points, impacts=impacts)
 
     def jacobians(self, state: State, count: int) -> Jacobians[State]:
@@ -125,10 +125,10 @@ class StroboscopicMap:
         free = require_state(self.oscillator, state).regime == Regime.OUTSIDE
         require(free, "state is in contact; start from a strobe at which the tip is off the wall")
         self.orbit(state, 0)  # which refuses a state that is not at a strobe
-        period, n, weight = self._system.motion.period, self.oscillator.n_modes, self._system.weight
+        period, n, weight = self._system.numbers.period, self.oscillator.n_modes, self._system.weight
         for more in LONGER:
-            run = simulate(self.oscillator, replace(state, time=0.0), periods=count + more)
-            replay = Replay(Sensitivities(oscillator=self.oscillator), run)
+            trajectory = simulate(self.oscillator, replace(state, time=0.0), periods=count + more)
+            replay = Replay(Sensitivities(oscillator=self.oscillator), trajectory)
             strobes = [j for j in range(1, count + more + 1) if not replay.touching(j * period)]
             if strobes:
                 strobes = strobes[: len(strobes) if more == 0 else 1]
@@ -141,5 +141,5 @@ class StroboscopicMap:
             tangent = replay.to(last * period)[: 2 * n, : 2 * n]
             found.append((weight[:, None] * tangent / weight, last - first))
             first = last
-        q, v = run.strobe_displacement[first - 1], run.strobe_velocity[first - 1]
+        q, v = trajectory.strobe_displacement[first - 1], trajectory.strobe_velocity[first - 1]
         return found, State(displacement=q, velocity=v)

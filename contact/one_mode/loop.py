@@ -38,7 +38,7 @@ import math
 from contact.engine.event_loop import DONE, advance
 from contact.engine.recorder import strobes_only
 from contact.flight.modal_flow import FAINT, LOOK
-from contact.flight.motion import COSINE, SINE, with_drive
+from contact.flight.numbers import COSINE, SINE, with_drive
 from contact.machine.compiled import borrowed, inlined, kernel
 from contact.one_mode.one_impact import crossing_guess, is_proved, one_impact, peak_derivatives
 from contact.one_mode.period_table import SMALL, flow_over, table_at, taylor_flow, through, tip_near
@@ -121,11 +121,11 @@ def one_mode_periods(table, system, factors, u, v, runs, points, counts):
     table, u, v, points = borrowed(table), borrowed(u), borrowed(v), borrowed(points)
     counts, local, n, weight = borrowed(counts), table, table.mode, system.weight[0]
     mean_u, mean_v = system.mean[0] * weight, system.mean[1] * weight
-    driven_u = weight * system.motion.modes[COSINE, 0]
-    driven_v = weight * system.motion.drive * system.motion.modes[SINE, 0]
+    driven_u = weight * system.numbers.modes[COSINE, 0]
+    driven_v = weight * system.numbers.drive * system.numbers.modes[SINE, 0]
     per_omega = system.weight[1] / weight
     left, run, factor = 0, runs[0], 1.0
-    first = run.period
+    first = run.stretch
     un, vn = weight * u[0], weight * v[0]
     outside = run.regime == OUTSIDE and run.contact_order == 0
     for start in range(0, counts.size, LOOK):
@@ -134,7 +134,7 @@ def one_mode_periods(table, system, factors, u, v, runs, points, counts):
         for i in range(start, min(start + LOOK, counts.size)):
             if factors.size > 0 and factors[i] != factor:
                 change, factor = factors[i] - factor, factors[i]
-                local = table_at(table, system.motion, factor)
+                local = table_at(table, system.numbers, factor)
                 un, vn = un - change * driven_u, vn - change * driven_v
                 mean_u, mean_v = mean_u + change * driven_u, mean_v + change * driven_v
             impacts = 0
@@ -151,10 +151,10 @@ def one_mode_periods(table, system, factors, u, v, runs, points, counts):
                     impacts, ui, vi = decided_period(local, rho, p, q, un, vn)
                 if impacts < 0:
                     left += 1
-                    u[0], v[0], run.period = un / weight, vn / weight, first + i
-                    motion = system.motion if factor == 1.0 else with_drive(system.motion, factor)
+                    u[0], v[0], run.stretch = un / weight, vn / weight, first + i
+                    numbers = system.numbers if factor == 1.0 else with_drive(system.numbers, factor)
                     here = strobes_only(points[i : i + 1], counts[i : i + 1])
-                    status = advance(motion, u, v, runs, first + i + 1, 0.0, here, None)
+                    status = advance(numbers, u, v, runs, first + i + 1, 0.0, here, None)
                     if status != DONE:
                         return status, left
                     impacts, ui, vi = counts[i], weight * u[0], weight * v[0]
@@ -165,5 +165,5 @@ def one_mode_periods(table, system, factors, u, v, runs, points, counts):
             counts[i] = impacts
     change = 1.0 - factor
     un, vn = un - change * driven_u, vn - change * driven_v
-    u[0], v[0], run.period = un / weight, vn / weight, first + counts.size
+    u[0], v[0], run.stretch = un / weight, vn / weight, first + counts.size
     return DONE, left

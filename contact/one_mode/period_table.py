@@ -25,7 +25,7 @@ import numpy as np
 from contact.flight.bounds import HIGHEST, LEAST_SLACK
 from contact.flight.elementary import EPS
 from contact.flight.modal_flow import flow_matrix
-from contact.flight.motion import DAMPED, DAMPED_LOW, DECAY, OMEGA, Motion
+from contact.flight.numbers import DAMPED, DAMPED_LOW, DECAY, OMEGA, Numbers
 from contact.laws import NEWTON
 from contact.machine.compiled import inlined, kernel
 
@@ -94,22 +94,22 @@ class PeriodTable(NamedTuple):
 
 
 @inlined
-def table_at(table, motion, factor):
-    """The `table` of `motion` at `factor` times its amplitude, to which X_k and R_k are in proportion.
+def table_at(table, numbers, factor):
+    """The `table` of `numbers` at `factor` times its amplitude, to which X_k and R_k are in proportion.
 
     None, the table of any other oscillator, stays None.
     """
     if table is None:
         return table
-    mode, amplitude, omega = table.mode, factor * motion.amplitude, motion.modes[OMEGA, 0]
-    steady = abs(motion.level) + factor * (abs(motion.tip_sine) + abs(motion.tip_cosine)) + motion.gap
+    mode, amplitude, omega = table.mode, factor * numbers.amplitude, numbers.modes[OMEGA, 0]
+    steady = abs(numbers.level) + factor * (abs(numbers.tip_sine) + abs(numbers.tip_cosine)) + numbers.gap
     margin = SAFETY * 4.0 * EPS * (steady + 2.0 * max(1.0, 0.5 * mode.decay / omega) * abs(mode.gap))
     rho = (1.0 - LEAST_SLACK) * mode.gap / max(1.0, mode.detuning)
     # (*) needs the peak in the middle half of the period
     inner = abs(mode.peak / mode.period - 0.5) <= 0.25 + 1e-12 and amplitude <= HIGHEST * abs(mode.gap)
     fourth = amplitude * mode.drive**4 + omega * (omega + mode.decay) ** 3 * abs(rho)
     here = Steady(
-        overshoot=amplitude + motion.level,
+        overshoot=amplitude + numbers.level,
         peak_acceleration=amplitude * mode.drive * mode.drive,
         largest_deviation=rho if inner else -1.0,
         margin=margin,
@@ -120,24 +120,24 @@ def table_at(table, motion, factor):
 
 
 @kernel
-def full_table(motion, parts):
+def full_table(numbers, parts):
     """The table of a motion of one mode with its period in `parts` parts."""
-    modes, w, period = motion.modes, motion.drive, motion.period
+    modes, w, period = numbers.modes, numbers.drive, numbers.period
     decay, omega, high, low = modes[DECAY, 0], modes[OMEGA, 0], modes[DAMPED, 0], modes[DAMPED_LOW, 0]
-    peak = min((math.atan2(motion.tip_sine, motion.tip_cosine) % (2.0 * math.pi)) / w, period)
+    peak = min((math.atan2(numbers.tip_sine, numbers.tip_cosine) % (2.0 * math.pi)) / w, period)
     mode = OneMode(
         drive=w,
         decay=decay,
         stiffness=omega * omega,
         determinant=math.copysign(high * (high + 2.0 * low), omega - 0.5 * decay),
-        gap=-motion.level,
+        gap=-numbers.level,
         period=period,
         spacing=period / parts,
         nodes_per_second=parts / period,
         peak=peak,
         period_flow=flow_matrix(omega, decay, high, low, period),
         peak_flow=flow_matrix(omega, decay, high, low, peak),
-        kick=-(1.0 + motion.number0),
+        kick=-(1.0 + numbers.number0),
         detuning=(abs(w * w - omega * omega) + decay * omega) / (w * w),
         free_bound=omega * (omega + decay),
         mode_time_squared=1.0 / (omega * omega),
@@ -147,26 +147,26 @@ def full_table(motion, parts):
     for k in range(parts + 1):
         t = k * (period / parts)
         s, c = math.sin(w * t), math.cos(w * t)
-        rows[k, 0] = motion.tip_sine * s + motion.tip_cosine * c
-        rows[k, 1] = motion.tip_sine * c - motion.tip_cosine * s
+        rows[k, 0] = numbers.tip_sine * s + numbers.tip_cosine * c
+        rows[k, 1] = numbers.tip_sine * c - numbers.tip_cosine * s
         rows[k, 2], rows[k, 3], rows[k, 4], rows[k, 5] = flow_matrix(omega, decay, high, low, t)
-    return table_at(PeriodTable(mode, Steady(0.0, 0.0, 0.0, 0.0, 0.0, 1.0), rows), motion, 1.0)
+    return table_at(PeriodTable(mode, Steady(0.0, 0.0, 0.0, 0.0, 0.0, 1.0), rows), numbers, 1.0)
 
 
-def period_table(motion: Motion) -> PeriodTable | None:
+def period_table(numbers: Numbers) -> PeriodTable | None:
     """The table of a driven oscillator of one mode under Newton's law with a constant restitution.
 
     Returns None for another law or several modes, without stiffness or drive, for a mode with its node at the
     tip, and for one so fast that too many nodes would be needed.
     """
-    constant = motion.law == NEWTON and motion.table.size == 0
-    suits = constant and motion.size == 1 and motion.inverse_mass != 0.0
-    if not (suits and motion.omega[0] > 0 and motion.drive > 0):
+    constant = numbers.law == NEWTON and numbers.table.size == 0
+    suits = constant and numbers.size == 1 and numbers.inverse_mass != 0.0
+    if not (suits and numbers.omega[0] > 0 and numbers.drive > 0):
         return None
-    ratio = max(motion.drive, float(motion.omega[0]), float(motion.decay[0])) / motion.drive
+    ratio = max(numbers.drive, float(numbers.omega[0]), float(numbers.decay[0])) / numbers.drive
     if not ratio * FEWEST <= MOST:
         return None
-    table: PeriodTable = full_table(motion, FEWEST * 2 ** math.ceil(math.log2(ratio)))
+    table: PeriodTable = full_table(numbers, FEWEST * 2 ** math.ceil(math.log2(ratio)))
     return table
 
 

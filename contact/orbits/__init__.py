@@ -14,19 +14,19 @@ from contact.orbits.branches.continuation import Branch, first_event, fold_along
 from contact.orbits.branches.events import Event
 from contact.orbits.branches.orbit_derivatives import OrbitDerivatives, excess_derivatives, orbit_derivatives
 from contact.orbits.branches.path import follow_path
-from contact.orbits.families.family import Family, Orbit
 from contact.orbits.families.kick import KickFamily
+from contact.orbits.families.protocol import Family, Orbit
 from contact.orbits.families.single_impact import Kick, MaximalFamily, SingleImpactOrbit
 from contact.orbits.observation.amplitude_scan import AmplitudeScan, ScannedColumn
-from contact.orbits.observation.covariance import cloud, strobe_derivatives
+from contact.orbits.observation.covariance import strobe_covariance, strobe_derivatives
 from contact.orbits.observation.ends import OrbitEnd, fold_excess, orbit_end
 from contact.orbits.observation.lyapunov import Exponents, map_exponents, orbit_exponents
-from contact.orbits.observation.repetition import period_of
+from contact.orbits.observation.repetition import repeats_after
 from contact.orbits.observation.scan import OrbitDiagram, orbit_diagram
-from contact.orbits.observation.settling import Settled, born, born_period, settle
+from contact.orbits.observation.settling import Settled, onset_m, onset_orbit, settle
 from contact.orbits.shooting import PeriodicOrbit, Shooting
 from contact.sensitivity.change import Change
-from contact.sensitivity.motion import MotionDerivatives, motion_derivatives
+from contact.sensitivity.derivatives import MotionDerivatives, motion_derivatives
 
 __all__ = sorted(
     name for name, one in globals().items() if getattr(one, "__module__", "").startswith("contact.")

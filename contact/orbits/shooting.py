@@ -10,16 +10,16 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from beam.parameters import require_within
+from contact.orbits.branches.amplitude_curve import branch_ended, whole_branch
 from contact.orbits.branches.continuation import lowest_fold
 from contact.orbits.branches.events import Arc
-from contact.orbits.branches.family_curve import branch_ended, whole_branch
-from contact.orbits.families.continuable_family import ContinuableFamily
-from contact.orbits.families.family import PeriodicOrbit
+from contact.orbits.families.newton_family import NewtonFamily
+from contact.orbits.families.touch_orbit import PeriodicOrbit
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Shooting(ContinuableFamily):
-    """The family of orbits with `impacts` touches in `period` drive periods, under any contact law.
+class Shooting(NewtonFamily):
+    """The family of orbits with `impacts` touches in `m` drive periods, under any contact law.
 
     The drive amplitude of the `oscillator` does not matter.
     """

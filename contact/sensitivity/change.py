@@ -173,10 +173,10 @@ class Sensitivities:
     def variation(self) -> Variation:
         """All derivatives in the form that compiled functions take."""
         if not self.changes:
-            return variation(self.oscillator.motion(), self.oscillator.tip_response())
+            return variation(self.oscillator.numbers(), self.oscillator.tip_response())
         tip, law = self.tip_response, self._row("law")
         return variation(
-            self.oscillator.motion(),
+            self.oscillator.numbers(),
             self.oscillator.tip_response(),
             2.0 * self.oscillator.model.omega * self.model["omega"],
             self.model["decay_rate"],
@@ -219,6 +219,6 @@ def change_along(path: Path, p: float, low: float, high: float) -> Change:
 def _numbers(oscillator: ImpactOscillator) -> Array:
     """The rows of the model, the gap, the numbers of the law, drive frequency and amplitude in one row."""
     law, drive = oscillator.stop.law, oscillator.driven
-    numbers = (*law.adjustable, 0.0, 0.0)[:2]
+    adjustable = (*law.adjustable, 0.0, 0.0)[:2]
     rows = [getattr(oscillator.model, name) for name in ARRAYS]
-    return np.concatenate([*rows, [oscillator.stop.gap, *numbers, drive.frequency, drive.amplitude]])
+    return np.concatenate([*rows, [oscillator.stop.gap, *adjustable, drive.frequency, drive.amplitude]])

@@ -13,13 +13,13 @@ from numpy.typing import NDArray
 from beam.parameters import Array
 from contact.errors import NoDerivative
 from contact.flight.modal_flow import propagate, steady_motion
-from contact.flight.motion import Motion
+from contact.flight.numbers import Numbers
 from contact.flight.variation import all_tip_changes, tangent_flight
 from contact.machine.compiled import kernel
 from contact.oscillator import ImpactOscillator
 from contact.sensitivity.change import Sensitivities
 from contact.sensitivity.touch_flow import FLOWN, TOUCHING, flow_error, flow_from_touch
-from contact.touch import TOUCHES
+from contact.touch import LAWS
 from contact.touch.passage import new_touches
 from contact.trajectory import ImpactKind, State, Trajectory
 
@@ -27,23 +27,23 @@ from contact.trajectory import ImpactKind, State, Trajectory
 @kernel
 def fly_through(vary, tangent, u, v, clock, times, table):
     """A flight with tangents from the time `clock` over rising `times` [s]; see ``Replay.along``."""
-    motion = vary.motion
+    numbers = vary.numbers
     for i in range(times.size):
         if times[i] > clock:
-            tangent_flight(vary, tangent, u, v, clock % motion.period, times[i] - clock)
-            propagate(motion, u, v, times[i] - clock, u, v)
+            tangent_flight(vary, tangent, u, v, clock % numbers.period, times[i] - clock)
+            propagate(numbers, u, v, times[i] - clock, u, v)
             clock = times[i]
         table[i] = tangent[:-2]
 
 
 class Replay:
-    """Replays `run` with its variational equation.
+    """Replays a `trajectory` with its variational equation.
 
     The run must start off the stop.  Without `start` only tangents from the first touch on have a meaning.
 
     Parameters
     ----------
-    sensitivities, run : Sensitivities, Trajectory
+    sensitivities, trajectory : Sensitivities, Trajectory
         The oscillator, and the parameters to which the last columns of `tangent` belong; and its motion.
     start : State, optional
         The state from which the run starts; needed for the derivatives of the flight to the first touch.
@@ -58,9 +58,11 @@ class Replay:
     NoDerivative is raised if the motion grazes the stop, or comes to rest on it.
     """
 
-    def __init__(self, sensitivities: Sensitivities, run: Trajectory, start: State | None = None) -> None:
-        self.vary, n, met = sensitivities.variation, sensitivities.oscillator.n_modes, run.impacts
-        motion = self.vary.motion
+    def __init__(
+        self, sensitivities: Sensitivities, trajectory: Trajectory, start: State | None = None
+    ) -> None:
+        self.vary, n, met = sensitivities.variation, sensitivities.oscillator.n_modes, trajectory.impacts
+        numbers = self.vary.numbers
         words = "touches the stop", "grazes the stop", "comes to rest on the stop", "starts in the stop"
         for i in np.flatnonzero(met.kind != ImpactKind.IMPACT):
             at, detail = float(met.start[i]), f"it {words[met.kind[i]]} there"
@@ -72,7 +74,7 @@ class Replay:
         self._i, self.clock, self.u, self.v = 0, 0.0, np.zeros(n), np.zeros(n)
         if start is not None:
             self.clock = start.time
-            q, q_rate = steady_motion(motion, start.time % motion.period)
+            q, q_rate = steady_motion(numbers, start.time % numbers.period)
             self.u, self.v = start.displacement - q, start.velocity - q_rate
 
     def touching(self, times: float | Array) -> NDArray[np.bool_]:
@@ -124,15 +126,15 @@ class Replay:
         """Move on to a time before the next touch."""
         length = time - self.clock
         if length > 0.0:
-            motion = self.vary.motion
-            tangent_flight(self.vary, self.tangent, self.u, self.v, self.clock % motion.period, length)
-            propagate(motion, self.u, self.v, length, self.u, self.v)
+            numbers = self.vary.numbers
+            tangent_flight(self.vary, self.tangent, self.u, self.v, self.clock % numbers.period, length)
+            propagate(numbers, self.u, self.v, length, self.u, self.v)
             self.clock = time
 
 
-def deviation_rates(motion: Motion, u: Array, v: Array) -> Array:
+def deviation_rates(numbers: Numbers, u: Array, v: Array) -> Array:
     """Time derivatives d(u, v)/dt of the deviations off the stop, (..., n_modes) -> (..., 2 n_modes)."""
-    return np.concatenate([v, -motion.decay * v - motion.omega**2 * u], axis=-1)
+    return np.concatenate([v, -numbers.decay * v - numbers.omega**2 * u], axis=-1)
 
 
 def deviation_rates_at_strobe(oscillator: ImpactOscillator, q: Array, touching: bool) -> Array:
@@ -140,9 +142,9 @@ def deviation_rates_at_strobe(oscillator: ImpactOscillator, q: Array, touching: 
 
     Off the stop `q` may have shape (..., 2 n_modes); if the tip is `touching` it has shape (2 n_modes,).
     """
-    motion, n = oscillator.motion(), oscillator.n_modes
-    steady, steady_rate = steady_motion(motion, 0.0)
-    rates = deviation_rates(motion, q[..., :n] - steady, q[..., n:] - steady_rate)
+    numbers, n = oscillator.numbers(), oscillator.n_modes
+    steady, steady_rate = steady_motion(numbers, 0.0)
+    rates = deviation_rates(numbers, q[..., :n] - steady, q[..., n:] - steady_rate)
     if touching:
-        rates[n:] = TOUCHES[motion.law].acceleration(motion, rates[n:], q[:n], q[n:])
+        rates[n:] = LAWS[numbers.law].acceleration(numbers, rates[n:], q[:n], q[n:])
     return rates

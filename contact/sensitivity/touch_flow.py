@@ -31,10 +31,10 @@ contact of the letter's beam."""
 
 
 @kernel
-def carry_tangents(motion, run, u, v, s, until, series, watcher):
+def carry_tangents(numbers, run, u, v, s, until, series, watcher):
     """The `Watch` of this flow: the tangents go through each step of a contact by its series."""
     vary, tangent, space = watcher
-    terms = touch.slopes(motion, run, series, space.weights) if tangent.shape[1] > 0 else 0
+    terms = touch.slopes(numbers, run, series, space.weights) if tangent.shape[1] > 0 else 0
     if terms > 0:
         tangent_step(vary, space, terms, s, tangent, (run.clock, u, v))
     return False
@@ -46,29 +46,29 @@ follow = follower(lambda law: carry_tangents)
 @part
 def through_touch(vary, run, u, v, end, tangent, touches):
     """Follow a touch to its release, at most to the drive time `end` [s]; never FEWER_TOUCHES."""
-    motion, with_tangent = vary.motion, tangent.shape[1] > 0
-    order, columns = touch.series_size(motion)
+    numbers, with_tangent = vary.numbers, tangent.shape[1] > 0
+    order, columns = touch.series_size(numbers)
     series = new_series(order, columns)
     space = new_tangent_workspace(order if with_tangent else 0, tangent.shape[0], tangent.shape[1])
     before = (run.clock, u.copy(), v.copy())
-    approach, rebound = begin(motion, run, u, v, touches)
+    approach, rebound = begin(numbers, run, u, v, touches)
     if not approach > 0.0:
         return FAILED
     if run.regime == SUSTAINED:  # accumulating impacts are followed one by one
         run.regime, run.contact_order = OUTSIDE, 1 if rebound < 0.0 else 2
     if with_tangent and run.regime == CONTACT:
-        force_jump(vary, touch.force(motion, 0.0, approach), approach, tangent, before)
+        force_jump(vary, touch.force(numbers, 0.0, approach), approach, tangent, before)
     run.steps = 0
     if run.regime != OUTSIDE:
-        left = follow(motion, u, v, run, end, MOST_STEPS, touches, series, (vary, tangent, space))
+        left = follow(numbers, u, v, run, end, MOST_STEPS, touches, series, (vary, tangent, space))
         if left == AT_END:
             if with_tangent:
-                touch.inside(motion, vary, (run.clock, u, v), run.clock - before[0], tangent)
+                touch.inside(numbers, vary, (run.clock, u, v), run.clock - before[0], tangent)
             return TOUCHING
         if left != RELEASED:
             return TOO_STIFF
     if with_tangent:
-        touch.saltation(motion, vary, before, (run.clock, u, v), tangent)
+        touch.saltation(numbers, vary, before, (run.clock, u, v), tangent)
     return FLOWN
 
 
@@ -77,7 +77,7 @@ def fly(vary, u, v, tangent, clock, time):
     """A flight of length `time` [s] from the drive time `clock` [s], the wall ignored."""
     if tangent.shape[1] > 0:
         tangent_flight(vary, tangent, u, v, clock, time)
-    propagate(vary.motion, u, v, time, u, v)
+    propagate(vary.numbers, u, v, time, u, v)
 
 
 @kernel
@@ -110,7 +110,7 @@ def flow_from_touch(vary, base, u, v, duration, tangent, touches):
     run.clock = base
     for i in range(touches.log.size):
         if i > 0:
-            crossing, s = first_crossing(vary.motion, run.clock, u, v, end - run.clock, run.contact_order)
+            crossing, s = first_crossing(vary.numbers, run.clock, u, v, end - run.clock, run.contact_order)
             if crossing != CROSSES:
                 outcome = FEWER_TOUCHES
                 break

@@ -1,4 +1,4 @@
-"""In touch with the stop: one file a law, chosen by the table `TOUCHES`.
+"""In touch with the stop: one file a law, chosen by the table `LAWS`.
 
 `newton`, `delayed`, `linear`, `power`   the laws; `power` serves three of them, one in `power_law`
 `passage`                                a touch from strike to release, under any law, and its record
@@ -15,57 +15,57 @@ How to add a law, say N = k d^3
        ``contact.touch.linear``: only `force`, `stiffness`, `step` and `slopes` are new.  `step` computes N[n]
        from d[0] ... d[n] (the cube by two products of series) and calls `extend` for the next order.  A force
        with a root at d = 0 needs a variable in which it has none: ``contact.touch.power``.
-    2. Its place in `TOUCHES`.
+    2. Its place in `LAWS`.
     3. Its export in ``contact/__init__.py``.
     4. A test: the contact of a free mass conserves energy, and agrees with an outside solver.
 To read for this: `ContactLaw`, ``linear``, ``time_series``, and `Series` in ``contact.touch.series``.
 
-What a file offers.  `motion` is the oscillator, `run` the state of the motion
+What a file offers.  `numbers` is the oscillator, `run` the state of the motion
 (``contact.touch.passage.STATE``), (u, v) are the deviations, and `series` is the workspace of one step.
     LAW, METHOD                               the law in words; the name of its exact method
     REGIMES                                   where the tip can be: ``contact.trajectory.Regime``
     series_size(motion) -> order, columns     size of the workspace of one step
-    strike(motion, run, u, v, approach) -> regime, rebound, loss, impulse
+    strike(numbers, run, u, v, approach) -> regime, rebound, loss, impulse
                                               the immediate effect of a touch: the regime that follows, the
                                               tip velocity after it (NaN if not known yet) [m/s], the energy
                                               lost [J] and the impulse of the stop (NaN if none acts at once)
                                               [N s]; before SUSTAINED, run.memory0 is the time until rest [s]
-    step(motion, run, u, v, limit, series) -> s, h, regime
+    step(numbers, run, u, v, limit, series) -> s, h, regime
                                               computes the series from (u, v) and a step of at most `limit`
                                               [s]: its length s in the law's own variable, its length h [s],
                                               and the regime that follows; NaN if the series gives no step
-    series_variable(motion, t, s, series)     the variable of the series a time t [s] into a step up to s
-    state(motion, run, s, series, u, v)       writes the deviations there into (u, v)
-    exchange(motion, run, span, series, known) -> work, impulse, force
+    series_variable(numbers, t, s, series)     the variable of the series a time t [s] into a step up to s
+    state(numbers, run, s, series, u, v)       writes the deviations there into (u, v)
+    exchange(numbers, run, span, series, known) -> work, impulse, force
                                               what the tip gives to the stop in a step up to span[1]: work
                                               [J], impulse [N s], and the larger of `known` and the largest
                                               force from span[0] on [N] (``contact.touch.exchange``)
-    height_over(motion, run, weight, own, series, out) -> order
+    height_over(numbers, run, weight, own, series, out) -> order
                                               the series of the height over another stop in this step, in the
                                               law's variable, from its `weight` of the modes and its `own`
-                                              numbers as in a stack (``contact.flight.motion``); 0 if no other
-                                              stop can be reached
-    joins(motion) -> bool                     whether contacts of this law are followed together with others
+                                              numbers as in a stack (``contact.flight.numbers``); 0 if
+                                              no other stop can be reached
+    joins(numbers) -> bool                    whether contacts of this law are followed together with others
                                               (``contact.touch.sets``), with the next function and number0 as
                                               dN/dd at d = 0; not if it is left out
-    coefficient(motion, n, depth) -> N        order n of the series of N in time, from that of d up to n + 1
-    leave(motion, run, u, v) -> velocity      sets run.contact_order for the flight after the release; the
+    coefficient(numbers, n, depth) -> N       order n of the series of N in time, from that of d up to n + 1
+    leave(numbers, run, u, v) -> velocity      sets run.contact_order for the flight after the release; the
                                               tip velocity there [m/s]
-    force(motion, d, d') -> N                 for the methods with a time step, at d >= 0
-    stiffness(motion, d, d') -> dN/dd, dN/dd'
-    slopes(motion, run, series, weights) -> terms
+    force(numbers, d, d') -> N                 for the methods with a time step, at d >= 0
+    stiffness(numbers, d, d') -> dN/dd, dN/dd'
+    slopes(numbers, run, series, weights) -> terms
                                               fills the series that the tangents need
                                               (``contact.touch.tangent_series.Weights``); returns the number
                                               of terms of the first three
-    saltation(motion, vary, before, after, tangent)
+    saltation(numbers, vary, before, after, tangent)
                                               the immediate effect of a touch on the tangents; `before` and
                                               `after` are (drive time, u, v)
-    inside(motion, vary, now, length, tangent)
+    inside(numbers, vary, now, length, tangent)
                                               the effect on the tangents, beyond the series, of a touch that
                                               has lasted a time `length` [s]; `now` is (drive time, u, v)
-    acceleration(motion, free, q, rate)       d^2 u/dt^2 in touch at a strobe, shape (n_modes,), from that of
+    acceleration(numbers, free, q, rate)      d^2 u/dt^2 in touch at a strobe, shape (n_modes,), from that of
                                               `free` modes and the modal state (q, q')
-    repeated_touch(motion, speed, period)     in closed form, the touch that repeats after some drive periods,
+    repeated_touch(numbers, speed, m)         in closed form, the touch that repeats after m drive periods,
                                               as (jump, duration, leaves) of ``single_impact.Kick``, or None
 The last two are plain functions.  What a file leaves out is that of ``contact.touch.time_series``, or else
 that of ``contact.touch.series``.
@@ -94,7 +94,7 @@ def offered(file: ModuleType) -> SimpleNamespace:
     return law
 
 
-TOUCHES = {
+LAWS = {
     NEWTON: offered(newton),
     delayed.DELAYED: offered(delayed),
     LINEAR: offered(linear),
@@ -104,7 +104,7 @@ TOUCHES = {
 
 
 def by_law(functions: dict[int, Function]) -> Function:
-    """The function of motion.law: `if motion.law == ...: return ...` for each code, then an error."""
+    """The function of numbers.law: `if numbers.law == ...: return ...` for each code, then an error."""
     names = {f"law_{code}": function for code, function in functions.items()}
     arguments = list(inspect.signature(next(iter(functions.values()))).parameters)
     lines = [f"def chosen({', '.join(arguments)}):"]
@@ -117,11 +117,11 @@ def by_law(functions: dict[int, Function]) -> Function:
 
 def _compiled(name: str) -> Callable[..., Any]:
     """The compiled function of this name, under any law."""
-    return by_law({code: getattr(law, name) for code, law in TOUCHES.items()})
+    return by_law({code: getattr(law, name) for code, law in LAWS.items()})
 
 
 strike, force, stiffness, saltation, inside, slopes, state, series_size, series_variable = map(
     _compiled, "strike force stiffness saltation inside slopes state series_size series_variable".split()
 )
 joins, coefficient = map(_compiled, ("joins", "coefficient"))
-"""The functions of motion.law that are needed beside the steps of a touch (``contact.touch.passage``)."""
+"""The functions of numbers.law that are needed beside the steps of a touch (``contact.touch.passage``)."""

@@ -35,8 +35,9 @@ import numpy as np
 
 from beam.parameters import final, require, require_within
 from contact.errors import NotPeriodic
-from contact.flight.modal_flow import free_flow, hold, push_on, tip_state, tip_steady
-from contact.flight.motion import COSINE, DECAY, LOAD, SQUARE, WEIGHT
+from contact.flight.modal_flow import free_flow
+from contact.flight.numbers import COSINE, DECAY, LOAD, SQUARE, WEIGHT
+from contact.flight.tip import hold, push_on, tip_state, tip_steady
 from contact.flight.variation import NUMBER0, NUMBER1, all_tip_changes, tangent_flight
 from contact.laws import ContactLaw
 from contact.machine.compiled import kernel, part
@@ -122,16 +123,16 @@ def numbers_at(table, speed):
 
 
 @kernel
-def strike(motion, run, u, v, approach):
+def strike(numbers, run, u, v, approach):
     """The touch: how long the tip will wait, and with which velocity it will leave."""
-    restitution, _slope, run.wait, _slope = numbers_at(motion.table, approach)
+    restitution, _slope, run.wait, _slope = numbers_at(numbers.table, approach)
     run.rebound = -restitution * approach
-    impulse = approach / motion.inverse_mass
+    impulse = approach / numbers.inverse_mass
     return WAITING, run.rebound, 0.5 * approach * impulse, impulse
 
 
 @part
-def step(motion, run, u, v, limit, series):
+def step(numbers, run, u, v, limit, series):
     """The wait, at most `limit` [s]; see ``contact.touch``."""
     h = min(run.wait, limit)
     run.wait -= h
@@ -139,53 +140,53 @@ def step(motion, run, u, v, limit, series):
 
 
 @part
-def state(motion, run, h, series, u, v):
+def state(numbers, run, h, series, u, v):
     """The deviation a time `h` [s] into the wait."""
     u[0], v[0] = 0.0, 0.0
-    hold(motion, run.clock + h, u, v)
+    hold(numbers, run.clock + h, u, v)
 
 
 @part
-def height_over(motion, run, weight, own, series, out):
+def height_over(numbers, run, weight, own, series, out):
     """No series: the only mode stands still."""
     return 0
 
 
 @kernel
-def exchange(motion, run, span, series, known):
+def exchange(numbers, run, span, series, known):
     """The impulse that holds the tip against spring and drive, and at the end the impulse of the rebound.
 
     In the wait phi u = -s, s the steady tip displacement past the stop, so that N phi^2 = s'' + c s' +
     omega^2 s + phi g.  Its integral has a closed form.  The instants of touch and rebound have no largest
     force.
     """
-    w, modes, length = motion.drive, motion.modes, span[1]
-    height, rate, _pull = tip_steady(motion, run.clock)
-    height_end, rate_end, _pull = tip_steady(motion, run.clock + length)
-    area = motion.level * length - (rate_end - rate) / (w * w) if w > 0.0 else height * length
+    w, modes, length = numbers.drive, numbers.modes, span[1]
+    height, rate, _pull = tip_steady(numbers, run.clock)
+    height_end, rate_end, _pull = tip_steady(numbers, run.clock + length)
+    area = numbers.level * length - (rate_end - rate) / (w * w) if w > 0.0 else height * length
     pull = rate_end - rate + modes[DECAY, 0] * (height_end - height) + modes[SQUARE, 0] * area
     pull += modes[WEIGHT, 0] * modes[LOAD, 0] * length
     if run.wait > 0.0:
-        return 0.0, pull / motion.inverse_mass, math.nan
-    return -0.5 * run.rebound**2 / motion.inverse_mass, (pull - run.rebound) / motion.inverse_mass, math.nan
+        return 0.0, pull / numbers.inverse_mass, math.nan
+    return -0.5 * run.rebound**2 / numbers.inverse_mass, (pull - run.rebound) / numbers.inverse_mass, math.nan
 
 
 @part
-def leave(motion, run, u, v):
+def leave(numbers, run, u, v):
     """The rebound."""
-    newton.newton_impact(motion, v, -run.rebound, 0.0)
+    newton.newton_impact(numbers, v, -run.rebound, 0.0)
     run.contact_order = 1 if run.rebound < 0.0 else 2
     return run.rebound
 
 
 @kernel
-def saltation(motion, vary, before, after, tangent):
+def saltation(numbers, vary, before, after, tangent):
     """The effect of touch and wait on the tangents."""
-    share = push_on(motion, 0, -1.0 / motion.inverse_mass)  # 1/phi: change of the mode per change of the tip
+    share = push_on(numbers, 0, -1.0 / numbers.inverse_mass)  # 1/phi: the mode per tip
     clock, u, v = before
-    _height, approach, pull_in = tip_state(motion, clock, u, v)
-    restitution, restitution_slope, delay, delay_slope = numbers_at(motion.table, approach)
-    _height, _velocity, pull_out = tip_state(motion, after[0], after[1], after[2])
+    _height, approach, pull_in = tip_state(numbers, clock, u, v)
+    restitution, restitution_slope, delay, delay_slope = numbers_at(numbers.table, approach)
+    _height, _velocity, pull_out = tip_state(numbers, after[0], after[1], after[2])
     height, rate = all_tip_changes(vary, tangent, u, v, clock)
     first = height.size - len(vary.scalars)
     for j in range(height.size):
@@ -206,40 +207,40 @@ def saltation(motion, vary, before, after, tangent):
 
 
 @kernel
-def inside(motion, vary, now, length, tangent):
+def inside(numbers, vary, now, length, tangent):
     """The tip has waited at the stop for a time `length` [s], and the drive has gone on."""
     clock, u, v = now
-    share = push_on(motion, 0, 1.0 / motion.inverse_mass)
+    share = push_on(numbers, 0, 1.0 / numbers.inverse_mass)
     tangent_flight(vary, tangent, u, v, clock - length, length)
     tangent[:2] = 0.0
     height, rate = all_tip_changes(vary, tangent, u, v, clock)
     tangent[0], tangent[1] = share * height, share * rate
 
 
-def acceleration(motion, free, q, rate):
+def acceleration(numbers, free, q, rate):
     """During the wait the mode stands still, so that its deviation follows the drive."""
-    return motion.drive**2 * motion.row(COSINE)
+    return numbers.drive**2 * numbers.row(COSINE)
 
 
-def repeated_touch(motion, speed, period):
-    """The touch with approach `speed` [m/s] that repeats after m = `period` drive periods.
+def repeated_touch(numbers, speed, m):
+    """The touch with approach `speed` [m/s] that repeats after `m` drive periods.
 
     Returns the jumps of the mode and its velocity, referred to the touch by the free flow, shape (1, 2), the
     length of the wait [s], and whether the tip leaves with a velocity.  NotPeriodic is raised if the wait
     takes up the m periods, or the mode is back after them.
     """
-    gap = motion.gap
-    restitution, _slope, delay, _slope = numbers_at(motion.table, speed)
-    left = period * motion.period - delay
-    w, angle = motion.drive, motion.drive * delay
+    gap = numbers.gap
+    restitution, _slope, delay, _slope = numbers_at(numbers.table, speed)
+    left = m * numbers.period - delay
+    w, angle = numbers.drive, numbers.drive * delay
     turn = np.array([[np.cos(angle), np.sin(angle) / w], [-w * np.sin(angle), np.cos(angle)]])
     before, after = np.array([gap, speed]), np.array([gap, -restitution * speed])
-    flow = free_flow(motion, max(left, 0.0))[0]
+    flow = free_flow(numbers, max(left, 0.0))[0]
     back = np.eye(2) - flow @ turn
     if left <= 0.0 or abs(np.linalg.det(back)) <= SINGULAR:
-        detail = f"no orbit of period {period} has a touch that waits for {delay:g} s"
+        detail = f"no orbit of period {m} has a touch that waits for {delay:g} s"
         raise NotPeriodic(time=delay, gap=0.0, velocity=speed, detail=detail)
     steady = np.linalg.solve(back, before - flow @ after)
     met, left_with = before - steady, after - turn @ steady
-    jump = free_flow(motion, -delay)[0] @ left_with - met
-    return motion.least_change(jump), float(delay), restitution > 0.0
+    jump = free_flow(numbers, -delay)[0] @ left_with - met
+    return numbers.least_change(jump), float(delay), restitution > 0.0

@@ -110,9 +110,9 @@ def complementary(coupling, members, count, b, z):
 
 
 @kernel
-def moreau(coupling, members, count, restitution, before, numbers):
-    """Moreau's law: impulses, velocities after them and energies lost, in the rows of `numbers`."""
-    impulse, after, loss = numbers
+def moreau(coupling, members, count, restitution, before, values):
+    """Moreau's law: impulses, velocities after them and energies lost, in the rows of `values`."""
+    impulse, after, loss = values
     for p in range(count):
         after[p] = (1.0 + restitution[p]) * before[p]
     complementary(coupling, members, count, after, impulse)
@@ -126,9 +126,9 @@ def moreau(coupling, members, count, restitution, before, numbers):
 
 
 @kernel
-def sequence(coupling, members, count, restitution, before, numbers):
+def sequence(coupling, members, count, restitution, before, values):
     """One stop after the other, see above: as `moreau`.  Returns whether they separate within the bound."""
-    impulse, after, loss = numbers
+    impulse, after, loss = values
     largest = 0.0
     for p in range(count):
         impulse[p], after[p], loss[p] = 0.0, before[p], 0.0

@@ -12,8 +12,8 @@ Holmes, J. Sound Vib. 90 (1983) 129, for one mode).
 import math
 
 from contact.flight.elementary import EPS
-from contact.flight.modal_flow import tip_rounding
 from contact.flight.polynomial_root import first_polynomial_root
+from contact.flight.tip import tip_rounding
 from contact.machine.compiled import kernel, part
 from contact.touch import time_series
 from contact.touch.time_series import DEPTH, FORCE, begin, extend, longest_step
@@ -38,43 +38,43 @@ def stiffness(numbers, depth, rate):
 
 
 @part
-def slopes(motion, run, series, weights):
+def slopes(numbers, run, series, weights):
     """The series for the tangents: dN/dd and dN/dd' are constants, and zero behind the wall without force."""
     pushes = 0.0 if run.regime == INSIDE else 1.0
     weights.time[0] = 1.0
-    weights.depth[0], weights.rate[0] = pushes * motion.number0, pushes * motion.number1
+    weights.depth[0], weights.rate[0] = pushes * numbers.number0, pushes * numbers.number1
     for n in range(time_series.ORDER):
         depth, rate = series.scalars[DEPTH, n], (n + 1.0) * series.scalars[DEPTH, n + 1]
-        weights.force[n] = pushes * (motion.number0 * depth + motion.number1 * rate)
+        weights.force[n] = pushes * (numbers.number0 * depth + numbers.number1 * rate)
         weights.first[n], weights.second[n] = pushes * depth, pushes * rate
     return 1
 
 
 @part
-def joins(motion):
+def joins(numbers):
     """It is followed beside other contacts."""
     return True
 
 
 @part
-def coefficient(motion, n, depth):
+def coefficient(numbers, n, depth):
     """Order n of k d + c d'."""
-    return motion.number0 * depth[n] + motion.number1 * (n + 1.0) * depth[n + 1]
+    return numbers.number0 * depth[n] + numbers.number1 * (n + 1.0) * depth[n + 1]
 
 
 @kernel
-def step(motion, run, u, v, limit, series):
+def step(numbers, run, u, v, limit, series):
     """One step from (u, v), at most `limit` [s]; see ``contact.touch``."""
-    k, c = motion.number0, motion.number1
+    k, c = numbers.number0, numbers.number1
     depth, force = series.scalars[DEPTH], series.scalars[FORCE]
-    begin(motion, run.clock, u, v, series)
+    begin(numbers, run.clock, u, v, series)
     for n in range(time_series.ORDER - 1):
-        force[n] = coefficient(motion, n, depth)
-        extend(motion, n, 0.0 if run.regime == INSIDE else force[n], series)
-    h = min(longest_step(motion, k * depth[0] ** 2, u, v, series), limit)
+        force[n] = coefficient(numbers, n, depth)
+        extend(numbers, n, 0.0 if run.regime == INSIDE else force[n], series)
+    h = min(longest_step(numbers, k * depth[0] ** 2, u, v, series), limit)
     if not h > EPS * run.clock:
         return math.nan, math.nan, CONTACT
-    rounding = tip_rounding(motion, u, v)
+    rounding = tip_rounding(numbers, u, v)
     if run.regime == CONTACT:
         end = first_polynomial_root(force, -1.0, h, rounding * k)
         if end >= 0.0:

@@ -30,18 +30,10 @@ series is that of ``contact.touch.time_series``.
 import math
 
 from contact.flight.elementary import EPS
-from contact.flight.modal_flow import (
-    hold,
-    jerk_bound,
-    mode_acceleration,
-    push_on,
-    tip_rounding,
-    tip_state,
-    tip_steady,
-    tip_sum,
-)
-from contact.flight.motion import DECAY, LOAD, SQUARE, WEIGHT
+from contact.flight.modal_flow import mode_acceleration
+from contact.flight.numbers import DECAY, LOAD, SQUARE, WEIGHT
 from contact.flight.polynomial_root import first_polynomial_root
+from contact.flight.tip import hold, jerk_bound, push_on, tip_rounding, tip_state, tip_steady, tip_sum
 from contact.flight.variation import NUMBER0, all_tip_changes
 from contact.machine.compiled import kernel, part
 from contact.speed_table import at_speed
@@ -80,78 +72,78 @@ def stiffness(numbers, depth, rate):
 
 
 @part
-def slopes(motion, run, series, weights):
+def slopes(numbers, run, series, weights):
     """No series: the tangents change at the impact only (`saltation`)."""
     return 0
 
 
 @part
-def joins(motion):
+def joins(numbers):
     """Its impacts and its rest are followed beside other contacts."""
     return True
 
 
 @kernel
-def newton_impact(motion, v, approach, restitution):
+def newton_impact(numbers, v, approach, restitution):
     """Apply the impulse that turns the tip velocity `approach` into -`restitution` times itself."""
-    impulse = (1.0 + restitution) * approach / motion.inverse_mass
+    impulse = (1.0 + restitution) * approach / numbers.inverse_mass
     for k in range(v.size):
-        v[k] += push_on(motion, k, impulse)
+        v[k] += push_on(numbers, k, impulse)
 
 
 @part
-def low_hop(motion, clock, acceleration, rebound, rounding):
+def low_hop(numbers, clock, acceleration, rebound, rounding):
     """0 if a hop is not low enough for a stay or does not end, 1 if it is one, `STEADY_WANTED` if it is one
     under a steady pull; see `LOWEST_HOP`.
 
     `rebound` is the speed with which the tip leaves [m/s] and `rounding` the rounding bound of the tip
     displacement [m].
     """
-    lost, lowest, energy = 1.0 - motion.number0, rounding * acceleration, 0.5 * rebound * rebound
+    lost, lowest, energy = 1.0 - numbers.number0, rounding * acceleration, 0.5 * rebound * rebound
     if acceleration <= 0.0 or energy * lost > max(LOWEST_HOP * lost, 1.0) * lowest:
         return 0
     if energy <= LOST_HOP * lowest:
         return 1
-    left = motion.period if energy <= LOWEST_HOP * lowest else motion.period - clock
+    left = numbers.period if energy <= LOWEST_HOP * lowest else numbers.period - clock
     return STEADY_WANTED if 2.0 * rebound <= left * acceleration * lost else 0
 
 
 @part
-def hops_end(motion, run, u, v, rebound, rounding):
+def hops_end(numbers, run, u, v, rebound, rounding):
     """Whether the tip stays on the wall, as its hops are low and end; arguments of `low_hop`."""
-    acceleration = tip_state(motion, run.clock, u, v)[2]
-    verdict = low_hop(motion, run.clock, acceleration, rebound, rounding)
+    acceleration = tip_state(numbers, run.clock, u, v)[2]
+    verdict = low_hop(numbers, run.clock, acceleration, rebound, rounding)
     if verdict != STEADY_WANTED:
         return verdict > 0
-    pull = acceleration * (1.0 - motion.number0)  # W = 2 rebound/pull
-    change = 2.0 * rebound * jerk_bound(motion, u, v)
+    pull = acceleration * (1.0 - numbers.number0)  # W = 2 rebound/pull
+    change = 2.0 * rebound * jerk_bound(numbers, u, v)
     return change <= STEADY_PULL * acceleration * pull
 
 
 @part
-def restitution_at(motion, speed):
+def restitution_at(numbers, speed):
     """e [1] and its slope [s/m] at an approach speed [m/s]."""
-    if motion.table.shape[1] == 0:
-        return motion.number0, 0.0
-    e, slope = at_speed(motion.table, 1, speed)
+    if numbers.table.shape[1] == 0:
+        return numbers.number0, 0.0
+    e, slope = at_speed(numbers.table, 1, speed)
     return (e, slope) if 0.0 <= e <= 1.0 else (min(max(e, 0.0), 1.0), 0.0)  # a cubic may leave the range
 
 
 @kernel
-def hopping(motion, clock, u, v, rebound):
+def hopping(numbers, clock, u, v, rebound):
     """W of hops that begin with the speed `rebound` [s], and the part by which they end earlier [1].
 
     While they go on the mean force a/sum phi^2 acts, under which a changes at the rate j.  W is 0 where the
     hops do not end.
     """
-    modes, drag, jerk = motion.modes, 0.0, -(motion.drive**2) * tip_steady(motion, clock)[1]
+    modes, drag, jerk = numbers.modes, 0.0, -(numbers.drive**2) * tip_steady(numbers, clock)[1]
     for k in range(u.size):
-        drag += modes[WEIGHT, k] ** 2 * modes[DECAY, k] / motion.inverse_mass
-    pull = tip_state(motion, clock, u, v)[2] - drag * rebound
+        drag += modes[WEIGHT, k] ** 2 * modes[DECAY, k] / numbers.inverse_mass
+    pull = tip_state(numbers, clock, u, v)[2] - drag * rebound
     for k in range(u.size):
-        own = mode_acceleration(motion, k, u[k], v[k]) + push_on(motion, k, pull / motion.inverse_mass)
+        own = mode_acceleration(numbers, k, u[k], v[k]) + push_on(numbers, k, pull / numbers.inverse_mass)
         jerk -= modes[WEIGHT, k] * (modes[DECAY, k] * own + modes[SQUARE, k] * v[k])
-    lost = pull * (1.0 - motion.number0)
+    lost = pull * (1.0 - numbers.number0)
     if not lost > 0.0:
         return 0.0, 0.0
     whole = 2.0 * rebound / lost
@@ -159,9 +151,9 @@ def hopping(motion, clock, u, v, rebound):
 
 
 @kernel
-def acceleration_rounding(motion, u, v):
+def acceleration_rounding(numbers, u, v):
     """Bound of the rounding error of the tip acceleration at (u, v) [m/s^2]."""
-    total, modes = (abs(motion.tip_sine) + abs(motion.tip_cosine)) * motion.drive**2, motion.modes
+    total, modes = (abs(numbers.tip_sine) + abs(numbers.tip_cosine)) * numbers.drive**2, numbers.modes
     for k in range(u.size):
         pull = modes[SQUARE, k] * abs(u[k]) + modes[DECAY, k] * abs(v[k]) + abs(modes[LOAD, k])
         total += abs(modes[WEIGHT, k]) * pull
@@ -169,50 +161,50 @@ def acceleration_rounding(motion, u, v):
 
 
 @kernel
-def leaving_order(motion, clock, u, v):
+def leaving_order(numbers, clock, u, v):
     """The order of the derivative of the height, 2 or 3, by which a tip at rest on the wall leaves; 0 if it
     stays."""
-    pull, rounding = tip_state(motion, clock, u, v)[2], acceleration_rounding(motion, u, v)
+    pull, rounding = tip_state(numbers, clock, u, v)[2], acceleration_rounding(numbers, u, v)
     if abs(pull) > rounding:
         return 2 if pull < 0.0 else 0
-    jerk, modes = -(motion.drive**2) * tip_steady(motion, clock)[1], motion.modes
+    jerk, modes = -(numbers.drive**2) * tip_steady(numbers, clock)[1], numbers.modes
     for k in range(u.size):
-        own = mode_acceleration(motion, k, u[k], v[k])
+        own = mode_acceleration(numbers, k, u[k], v[k])
         jerk -= modes[WEIGHT, k] * (modes[DECAY, k] * own + modes[SQUARE, k] * v[k])
-    return 3 if jerk < -motion.fastest * rounding else 0
+    return 3 if jerk < -numbers.fastest * rounding else 0
 
 
 @kernel
-def strike(motion, run, u, v, approach):
+def strike(numbers, run, u, v, approach):
     """The impact; in the regime SUSTAINED the hops that follow it are a stay."""
-    (e, _slope), rounding = restitution_at(motion, approach), tip_rounding(motion, u, v)
-    newton_impact(motion, v, approach, e)
+    (e, _slope), rounding = restitution_at(numbers, approach), tip_rounding(numbers, u, v)
+    newton_impact(numbers, v, approach, e)
     turn = 1.0 + e  # rounded, so that the loss belongs to the rebound that follows
-    impulse = turn * approach / motion.inverse_mass
+    impulse = turn * approach / numbers.inverse_mass
     loss = 0.5 * (2.0 - turn) * impulse * approach
     if e * approach == 0.0:
-        run.contact_order, run.memory0 = leaving_order(motion, run.clock, u, v), 0.0
+        run.contact_order, run.memory0 = leaving_order(numbers, run.clock, u, v), 0.0
         return OUTSIDE if run.contact_order > 0 else SUSTAINED, 0.0, loss, impulse
-    if hops_end(motion, run, u, v, e * approach, rounding):
-        whole, sooner = hopping(motion, run.clock, u, v, e * approach)
-        run.memory0 = whole * (1.0 - sooner) if whole <= motion.period and abs(sooner) < STEADY_PULL else 0.0
+    if hops_end(numbers, run, u, v, e * approach, rounding):
+        whole, sooner = hopping(numbers, run.clock, u, v, e * approach)
+        run.memory0 = whole * (1.0 - sooner) if whole <= numbers.period and abs(sooner) < STEADY_PULL else 0.0
         return SUSTAINED, -e * approach, loss, impulse
     run.contact_order = 1
     return OUTSIDE, -e * approach, loss, impulse
 
 
 @kernel
-def step(motion, run, u, v, limit, series):
+def step(numbers, run, u, v, limit, series):
     """One step of the stay on the wall, at most `limit` [s]; see ``contact.touch``."""
-    begin(motion, run.clock, u, v, series)
+    begin(numbers, run.clock, u, v, series)
     for n in range(time_series.ORDER - 1):
-        held = free_pull(motion, n, series) / motion.inverse_mass
+        held = free_pull(numbers, n, series) / numbers.inverse_mass
         series.scalars[FORCE, n] = held
-        extend(motion, n, held, series)
-    h = min(longest_step(motion, 0.0, u, v, series), limit)
+        extend(numbers, n, held, series)
+    h = min(longest_step(numbers, 0.0, u, v, series), limit)
     if not h > EPS * run.clock:
         return math.nan, math.nan, SUSTAINED
-    margin = acceleration_rounding(motion, u, v) / motion.inverse_mass
+    margin = acceleration_rounding(numbers, u, v) / numbers.inverse_mass
     end = first_polynomial_root(series.scalars[FORCE], -1.0, h, margin)
     if end >= 0.0:
         return end, end, OUTSIDE
@@ -220,14 +212,14 @@ def step(motion, run, u, v, limit, series):
 
 
 @kernel
-def state(motion, run, h, series, u, v):
+def state(numbers, run, h, series, u, v):
     """Deviations of all modes a time `h` [s] into the step, the tip on the wall."""
-    time_series.state(motion, run, h, series, u, v)
-    hold(motion, run.clock + h, u, v)
+    time_series.state(numbers, run, h, series, u, v)
+    hold(numbers, run.clock + h, u, v)
 
 
 @kernel
-def exchange(motion, run, span, series, known):
+def exchange(numbers, run, span, series, known):
     """The impulse and the largest force of the rest; no work, for the tip does not move."""
     force = series.scalars[FORCE]
     _work, impulse, largest = exchange_of(series, force, force, UNIFORM, span, known)
@@ -235,14 +227,14 @@ def exchange(motion, run, span, series, known):
 
 
 @part
-def leave(motion, run, u, v):
+def leave(numbers, run, u, v):
     """The end of the rest, where d, d' and d'' vanish."""
     run.contact_order = 3
-    return tip_state(motion, run.clock, u, v)[1]
+    return tip_state(numbers, run.clock, u, v)[1]
 
 
 @kernel
-def saltation(motion, vary, before, after, tangent):
+def saltation(numbers, vary, before, after, tangent):
     """The effect of the impact on the tangents: d -> R d + (R f - f') (-y(d)/v).
 
     R is the reflection of the tip velocity, f and f' are the velocities of the flow before and after (M. A.
@@ -250,25 +242,25 @@ def saltation(motion, vary, before, after, tangent):
     (1991) 279).  Parameters change R as well.  If e depends on the approach v, the derivative of the rebound
     -e v with respect to v is -(e + e' v).
     """
-    n, count = motion.size, len(vary.scalars)
+    n, count = numbers.size, len(vary.scalars)
     clock, u, v = before
     rebound = after[2]
-    _height, approach, pull = tip_state(motion, clock, u, v)
-    e, slope = restitution_at(motion, approach)
-    flip = (1.0 + e) / motion.inverse_mass
-    turn = flip + slope * approach / motion.inverse_mass
+    _height, approach, pull = tip_state(numbers, clock, u, v)
+    e, slope = restitution_at(numbers, approach)
+    flip = (1.0 + e) / numbers.inverse_mass
+    turn = flip + slope * approach / numbers.inverse_mass
     height, rate = all_tip_changes(vary, tangent, u, v, clock)
     for j in range(height.size):
         late = -height[j] / approach  # by how much later this neighbour touches
         for k in range(n):
-            push = push_on(motion, k, turn)
-            slow = mode_acceleration(motion, k, u[k], v[k]) + push * pull
-            after_it = mode_acceleration(motion, k, u[k], rebound[k])
+            push = push_on(numbers, k, turn)
+            slow = mode_acceleration(numbers, k, u[k], v[k]) + push * pull
+            after_it = mode_acceleration(numbers, k, u[k], rebound[k])
             tangent[k, j] += (v[k] - rebound[k]) * late
             tangent[n + k, j] += push * rate[j] + (slow - after_it) * late
     for p in range(count):
-        mobility = 2.0 * tip_sum(motion, 0.0, vary.weight[p])
-        flipped = (vary.scalars[p, NUMBER0] - flip * mobility) / motion.inverse_mass
+        mobility = 2.0 * tip_sum(numbers, 0.0, vary.weight[p])
+        flipped = (vary.scalars[p, NUMBER0] - flip * mobility) / numbers.inverse_mass
         for k in range(n):
-            change = push_on(motion, k, flipped) - vary.weight[p, k] * flip
+            change = push_on(numbers, k, flipped) - vary.weight[p, k] * flip
             tangent[n + k, height.size - count + p] += change * approach

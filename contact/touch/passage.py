@@ -21,7 +21,7 @@ import numpy as np
 from beam.parameters import Array
 from contact import touch
 from contact.flight.elementary import EPS
-from contact.flight.modal_flow import hold, tip_state
+from contact.flight.tip import hold, tip_state
 from contact.machine.compiled import kernel, part
 from contact.trajectory import GRAZE, IMPACT, OUTSIDE, STAY, SUSTAINED
 
@@ -30,9 +30,9 @@ MARKS = np.dtype([(name, "i8") for name in ("logged", "sampled", "strobed", "imp
 whether a stop is touched, and the row of its last touch, in the record of its number."""
 
 _NAMES = (
-    "period",
+    "stretch",
     "start",
-    "end_period",
+    "end_stretch",
     "end",
     "approach",
     "rebound",
@@ -43,9 +43,9 @@ _NAMES = (
     "stop",
     "together",
 )
-_WHOLE = ("period", "end_period", "kind", "stop", "together")
+_WHOLE = ("stretch", "end_stretch", "kind", "stop", "together")
 TOUCH = np.dtype([(name, "i8" if name in _WHOLE else "f8") for name in _NAMES])
-"""A touch: period and clock of its start and of its end [s], velocity towards the stop at both [m/s], energy
+"""A touch: stretch and clock of its start and of its end [s], velocity towards the stop at both [m/s], energy
 given to the stop [J], impulse [N s] and largest force [N] (NaN if not known),
 ``contact.trajectory.ImpactKind``, number of the stop, and whether others acted at this instant."""
 
@@ -84,7 +84,7 @@ def is_full(record, rows=2):
 
 
 @kernel
-def open_touch(record, stop, period, clock, approach, kind, u, v):
+def open_touch(record, stop, stretch, clock, approach, kind, u, v):
     """Start a row of the log, for a touch of the stop of this number."""
     marks, own = record.marks[0], record.marks[stop]
     i = marks.logged
@@ -94,7 +94,7 @@ def open_touch(record, stop, period, clock, approach, kind, u, v):
     if record.log.size == 0:
         return
     row, n = record.log[i], u.size
-    row.period, row.start, row.end_period, row.end = period, clock, period, math.nan
+    row.stretch, row.start, row.end_stretch, row.end = stretch, clock, stretch, math.nan
     row.approach, row.rebound, row.loss, row.kind, row.stop = approach, math.nan, 0.0, kind, stop
     row.impulse = row.peak_force = math.nan
     row.together = 0
@@ -113,27 +113,27 @@ def add_exchange(record, stop, work, impulse, force):
 
 
 @kernel
-def close_touch(record, stop, period, clock, rebound, u, v):
+def close_touch(record, stop, stretch, clock, rebound, u, v):
     """Complete the row of the last touch of a stop."""
     record.marks[stop].touching = 0
     if record.log.size == 0:
         return
     i = record.marks[stop].row
     row = record.log[i]
-    row.end_period, row.end, row.rebound = period, clock, rebound
+    row.end_stretch, row.end, row.rebound = stretch, clock, rebound
     put_state(record.log_state[i], 2 * u.size, u, v)
 
 
 STATE = np.dtype(
-    [(name, "i8") for name in ("regime", "contact_order", "stop", "period", "evaluations", "steps")]
+    [(name, "i8") for name in ("regime", "contact_order", "stop", "stretch", "evaluations", "steps")]
     + [(name, "f8") for name in ("clock", "wait", "rebound", "memory0", "memory1")]
 )
 """The state of a motion besides its deviations: ``contact.trajectory.State`` for kernels.
 
 regime, wait, rebound: as there; contact_order: number of derivatives of the height over `stop` that vanish at
-the start of the flight; stop: number of the stop that is touched or was the last to be; period, clock: number
-of the drive period and time since its strobe [s]; evaluations:
-flights, contact steps and sampled positions so far; steps: flights and contact steps since the strobe;
+the start of the flight; stop: number of the stop that is touched or was the last to be; stretch,
+clock: as in ``contact.flight.clock``; evaluations: flights, contact steps and sampled positions so far;
+steps: flights and contact steps since the strobe;
 memory0, memory1: what the law keeps of the touch under way for itself, negative when to be computed anew.
 """
 
@@ -144,46 +144,46 @@ a touch of a second stop."""
 CLOSEST = 4.0 * EPS  # part of a drive period next to the end in which no step is made
 
 Watch = Callable[[SimpleNamespace], Callable[..., bool]]
-"""From a law of ``touch.TOUCHES`` to watch(motion, run, u, v, s, until, series, watcher), done at each step.
+"""From a law of ``touch.TOUCHES`` to watch(numbers, run, u, v, s, until, series, watcher), done at each step.
 The step leads from (u, v) at the clock of the run to `s`, in the law's own variable, at the clock `until`.
 It returns whether a second stop is touched on the way."""
 
 
 @part
-def begin(motion, run, u, v, touches):
+def begin(numbers, run, u, v, touches):
     """The strike of a touch: the law acts at once; returns the approach and the rebound velocity [m/s].
 
     The touch is written into the record `touches`, and closed unless the contact lasts.
     """
-    approach = tip_state(motion, run.clock, u, v)[1]
-    open_touch(touches, run.stop, run.period, run.clock, approach, IMPACT, u, v)
-    run.regime, rebound, loss, impulse = touch.strike(motion, run, u, v, approach)
+    approach = tip_state(numbers, run.clock, u, v)[1]
+    open_touch(touches, run.stop, run.stretch, run.clock, approach, IMPACT, u, v)
+    run.regime, rebound, loss, impulse = touch.strike(numbers, run, u, v, approach)
     add_exchange(touches, run.stop, loss, impulse, math.nan)
     if run.regime == OUTSIDE or run.regime == SUSTAINED:
-        close_touch(touches, run.stop, run.period, run.clock, rebound, u, v)
+        close_touch(touches, run.stop, run.stretch, run.clock, rebound, u, v)
     return approach, rebound
 
 
 @part
-def meet(motion, run, u, v, crosses, touches):
+def meet(numbers, run, u, v, crosses, touches):
     """A flight has met the stop: a touch begins, or with `crosses` false it is a graze, without effect.
 
     Accumulated impacts become a stay: their last hops are left out.  It begins when these would have ended,
     and their energy is its loss.
     """
     if not crosses:
-        open_touch(touches, run.stop, run.period, run.clock, 0.0, GRAZE, u, v)
+        open_touch(touches, run.stop, run.stretch, run.clock, 0.0, GRAZE, u, v)
         add_exchange(touches, run.stop, 0.0, 0.0, 0.0)
-        close_touch(touches, run.stop, run.period, run.clock, 0.0, u, v)
+        close_touch(touches, run.stop, run.stretch, run.clock, 0.0, u, v)
         run.contact_order = 2
     else:
-        _approach, rebound = begin(motion, run, u, v, touches)
+        _approach, rebound = begin(numbers, run, u, v, touches)
         if run.regime == SUSTAINED:
-            hold(motion, run.clock, u, v)
-            late = int((run.clock + run.memory0) / motion.period)
-            begins = run.clock + run.memory0 - late * motion.period
-            open_touch(touches, run.stop, run.period + late, begins, 0.0, STAY, u, v)
-            work, impulse = 0.5 * rebound * rebound / motion.inverse_mass, rebound / motion.inverse_mass
+            hold(numbers, run.clock, u, v)
+            late = int((run.clock + run.memory0) / numbers.period)
+            begins = run.clock + run.memory0 - late * numbers.period
+            open_touch(touches, run.stop, run.stretch + late, begins, 0.0, STAY, u, v)
+            work, impulse = 0.5 * rebound * rebound / numbers.inverse_mass, rebound / numbers.inverse_mass
             add_exchange(touches, run.stop, work, impulse, math.nan)
             run.memory0 = -1.0
 
@@ -192,13 +192,13 @@ def _follow(law: SimpleNamespace, watch: Callable[..., bool]) -> Callable[..., i
     """`follower` for one law, so that the law is looked up once a touch and not once a step."""
     step, state, leave = law.step, law.state, law.leave
 
-    def follow(motion, u, v, run, end, most, touches, series, watcher):
+    def follow(numbers, u, v, run, end, most, touches, series, watcher):
         """Follow a contact to its release, or to the clock `end`; returns how it is left.
 
         At most `most` steps are made since the strobe.  A release is written into the record `touches`.
         """
-        while end - run.clock > CLOSEST * motion.period:
-            s, h, following = step(motion, run, u, v, end - run.clock, series)
+        while end - run.clock > CLOSEST * numbers.period:
+            s, h, following = step(numbers, run, u, v, end - run.clock, series)
             run.evaluations += 1
             run.steps += 1
             if run.steps > most:
@@ -206,13 +206,13 @@ def _follow(law: SimpleNamespace, watch: Callable[..., bool]) -> Callable[..., i
             if not (0.0 <= h < math.inf):
                 return NO_STEP
             until = run.clock + h if h < end - run.clock else end
-            if watch(motion, run, u, v, s, until, series, watcher):
+            if watch(numbers, run, u, v, s, until, series, watcher):
                 return SECOND
-            state(motion, run, s, series, u, v)
+            state(numbers, run, s, series, u, v)
             run.regime, run.clock = following, until
             if following == OUTSIDE:
-                velocity = leave(motion, run, u, v)
-                close_touch(touches, run.stop, run.period, run.clock, velocity, u, v)
+                velocity = leave(numbers, run, u, v)
+                close_touch(touches, run.stop, run.stretch, run.clock, velocity, u, v)
                 return RELEASED
         return AT_END
 
@@ -221,4 +221,4 @@ def _follow(law: SimpleNamespace, watch: Callable[..., bool]) -> Callable[..., i
 
 def follower(watch: Watch) -> Callable[..., int]:
     """The compiled way through a contact under any law, with a `watch` on each step."""
-    return touch.by_law({code: _follow(law, watch(law)) for code, law in touch.TOUCHES.items()})
+    return touch.by_law({code: _follow(law, watch(law)) for code, law in touch.LAWS.items()})

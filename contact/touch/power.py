@@ -34,9 +34,10 @@ import math
 import numpy as np
 
 from contact.flight.elementary import EPS, sine_cosine
-from contact.flight.modal_flow import BRIEF, speed_scale, tip_rounding, tip_state, tip_sum
-from contact.flight.motion import SQUARE
+from contact.flight.modal_flow import BRIEF, speed_scale
+from contact.flight.numbers import SQUARE
 from contact.flight.polynomial_root import first_fall, first_polynomial_root, horner, polynomial_root
+from contact.flight.tip import tip_rounding, tip_state, tip_sum
 from contact.machine.compiled import kernel, part
 from contact.machine.vector_loops import LANES, next_modes, weighted_rows
 from contact.touch.exchange import exchange_of
@@ -94,11 +95,11 @@ def stiffness(numbers, depth, rate):
 
 
 @kernel
-def series_size(motion):
+def series_size(numbers):
     """Order and columns of the series: drive and powers of rho, filled up to eight, then u, then v."""
-    m, outer, inner, _c = law_of(motion)
+    m, outer, inner, _c = law_of(numbers)
     front = COSINE + 1 + max(outer + m - 1, outer + inner - 1, inner)
-    return ORDER, (front + LANES - 1) // LANES * LANES + 2 * motion.modes.shape[1]
+    return ORDER, (front + LANES - 1) // LANES * LANES + 2 * numbers.modes.shape[1]
 
 
 @part
@@ -108,21 +109,21 @@ def power(rows, n, i):
 
 
 @part
-def fill(motion, base, u, v, pushes, series):
+def fill(numbers, base, u, v, pushes, series):
     """The Taylor coefficients in sigma from (u, v) at drive time `base` [s], with or without the force.
 
     On entry scalars[ROOT, 0] holds rho.  Computed anew from the tip displacement, rho would lose its digits
     at shallow depth.
     """
-    rows, sums, modes, w, scalars = series.rows, series.sums, motion.modes, motion.drive, series.scalars
-    a, b, k, (m, outer, inner, c) = motion.tip_sine, motion.tip_cosine, motion.number0, law_of(motion)
+    rows, sums, modes, w, scalars = series.rows, series.sums, numbers.modes, numbers.drive, series.scalars
+    a, b, k, (m, outer, inner, c) = numbers.tip_sine, numbers.tip_cosine, numbers.number0, law_of(numbers)
     root, clock, push, lets_go = scalars[ROOT], scalars[CLOCK], scalars[PUSH], scalars[LETS_GO]
     time, lever, rho = scalars[TIME], scalars[LEVER], root[0]
     lift, at_v, share, unit = outer + m - 1, rows.shape[1] - modes.shape[1], 1.0 / m, 1.0 if c != 0.0 else k
     at_u, top = at_v - modes.shape[1], max(lift, outer + inner - 1, inner)
     front = sums if m == 2 else sums[:at_u]
     sine, cosine = sine_cosine(w * base, 0.0)
-    speed = tip_sum(motion, w * (a * cosine - b * sine), v)
+    speed = tip_sum(numbers, w * (a * cosine - b * sine), v)
     for i in range(u.size):
         rows[0, at_u + i] = u[i]
         rows[0, at_v + i] = v[i]
@@ -151,9 +152,9 @@ def fill(motion, base, u, v, pushes, series):
 
 
 @kernel
-def slopes(motion, run, series, weights):
+def slopes(numbers, run, series, weights):
     """The series for the tangents: rho^(m-1) times 1, dN/dd, dN/dd', N and its slopes by the two numbers."""
-    (m, outer, inner, c), k, pushes = law_of(motion), motion.number0, 0.0 if run.regime == INSIDE else 1.0
+    (m, outer, inner, c), k, pushes = law_of(numbers), numbers.number0, 0.0 if run.regime == INSIDE else 1.0
     rows, rates, rises = series.rows, series.rows[:, SPEED], series.rows[:, COSINE + inner]
     lever, steep, push = series.scalars[LEVER], series.scalars[STEEP], series.scalars[PUSH]
     for n in range(ORDER):
@@ -170,7 +171,7 @@ def slopes(motion, run, series, weights):
 
 
 @kernel
-def exchange(motion, run, span, series, known):
+def exchange(numbers, run, span, series, known):
     """What the tip gives to the stop: work, impulse and largest force; see ``contact.touch``."""
     rate, time = series.rows[:, SPEED], series.scalars[TIME]
     return exchange_of(series, series.scalars[PUSH], rate, time, span, known)
@@ -188,17 +189,17 @@ def greatest_speed(modes, rows, order):
 
 
 @part
-def farthest(motion, speed, root):
+def farthest(numbers, speed, root):
     """The sigma up to which a step sees a force that enters the speeds beyond `WINDOW` orders.
 
     All terms of such a step could be small although the force is not.  It reaches at most thrice the rho of
     its start, or the depth up to which the impulse of this force is below rounding.
     """
-    m, outer, inner, c = law_of(motion)
+    m, outer, inner, c = law_of(numbers)
     entry = outer + inner + m  # m (p + 1)
-    allowed = 0.5 * entry / m * TOLERANCE * speed / math.sqrt(motion.inverse_mass)
+    allowed = 0.5 * entry / m * TOLERANCE * speed / math.sqrt(numbers.inverse_mass)
     # the impulse k d^(p+1)/((p+1) d'), d' = m root[1], and that of the dashpot, 2 c d^((p+1)/2)/(p+1)
-    negligible = (2.0 * allowed * m * abs(root[1]) / motion.number0) ** (1.0 / entry)
+    negligible = (2.0 * allowed * m * abs(root[1]) / numbers.number0) ** (1.0 / entry)
     if inner > WINDOW:
         negligible = min(negligible, (allowed / c) ** (1.0 / inner))
     way = max(2.0 * root[0], negligible - root[0])
@@ -207,14 +208,14 @@ def farthest(motion, speed, root):
 
 
 @part
-def longest_step(motion, speed, series):
+def longest_step(numbers, speed, series):
     """The sigma up to which the series holds: the last orders of modes, rho and force are small.
 
     The modes move at each order m of sigma, and so does rho: one of the last m orders shows it.
     """
-    (m, outer, inner, c), root, longest = law_of(motion), series.scalars[ROOT], math.inf
+    (m, outer, inner, c), root, longest = law_of(numbers), series.scalars[ROOT], math.inf
     for n in range(ORDER, ORDER - max(2, m), -1):
-        top = greatest_speed(motion.modes, series.rows, n)
+        top = greatest_speed(numbers.modes, series.rows, n)
         longest = min(longest, log_longest(top, n, speed))
         # rho must be resolved as well as the modes, relative to the larger of its first two terms: under a
         # contact so soft that the modes give no bound, it gives one
@@ -223,64 +224,64 @@ def longest_step(motion, speed, series):
             linear = log_longest(abs(root[n]), n - 1, abs(root[1])) if root[1] != 0.0 else -math.inf
             if n == ORDER or max(whole, linear) < longest - FAR:
                 longest = min(longest, max(whole, linear))
-    push, mobility = series.scalars[PUSH], math.sqrt(motion.inverse_mass)
+    push, mobility = series.scalars[PUSH], math.sqrt(numbers.inverse_mass)
     s = limited_by_force(EDGE * math.exp(longest), push, ORDER - 1, mobility, speed, EDGE)
     if outer + inner + m > WINDOW:
-        s = min(s, farthest(motion, speed, root))
+        s = min(s, farthest(numbers, speed, root))
     if root[1] < 0.0 < root[0]:  # stop well behind the release: without a force the terms give no bound
         s = min(s, -4.0 * root[0] / root[1])
     if c == 0.0:
         return s
     # the dissipation is largest at the deeper end of the step
     deep = max(root[0], horner(root, 1.0, 0.0, s)[0]) if s < math.inf else root[0]
-    return min(s, RELAXED / (motion.inverse_mass * c * deep ** (outer + m - 1.0)))
+    return min(s, RELAXED / (numbers.inverse_mass * c * deep ** (outer + m - 1.0)))
 
 
 @kernel
-def series_variable(motion, t, end, series):
+def series_variable(numbers, t, end, series):
     """The sigma at which a time `t` [s] has passed, in a step up to `end`."""
     return polynomial_root(series.scalars[CLOCK], 1.0, t, 0.0, end) if t > 0.0 else 0.0
 
 
 @part
-def first_depth(motion, run, u, v):
+def first_depth(numbers, run, u, v):
     """The depth of a contact that begins: its rounding at least, as no sigma leads from rest at zero."""
-    moment = EPS * BRIEF * motion.period * run.memory1 * math.sqrt(motion.inverse_mass)  # where u = 0
-    return max(tip_rounding(motion, u, v), tip_state(motion, run.clock, u, v)[0], moment)
+    moment = EPS * BRIEF * numbers.period * run.memory1 * math.sqrt(numbers.inverse_mass)  # where u = 0
+    return max(tip_rounding(numbers, u, v), tip_state(numbers, run.clock, u, v)[0], moment)
 
 
 @kernel
-def step(motion, run, u, v, limit, series):
+def step(numbers, run, u, v, limit, series):
     """One step from (u, v), at most `limit` [s]; see ``contact.touch``."""
-    root, clock, (m, _outer, inner, c) = series.scalars[ROOT], series.scalars[CLOCK], law_of(motion)
+    root, clock, (m, _outer, inner, c) = series.scalars[ROOT], series.scalars[CLOCK], law_of(numbers)
     if run.memory1 < 0.0:
-        run.memory1 = speed_scale(motion, u, v)
+        run.memory1 = speed_scale(numbers, u, v)
     if run.memory0 < 0.0:
-        run.memory0 = first_depth(motion, run, u, v) ** (1.0 / m)
+        run.memory0 = first_depth(numbers, run, u, v) ** (1.0 / m)
     root[0], regime = run.memory0, run.regime
-    fill(motion, run.clock, u, v, regime == CONTACT, series)
+    fill(numbers, run.clock, u, v, regime == CONTACT, series)
     if run.memory1 == 0.0:  # nothing moves
         return 0.0, limit, regime
-    s = longest_step(motion, run.memory1, series)
+    s = longest_step(numbers, run.memory1, series)
     if not (0.0 < s < math.inf):
         return math.nan, math.nan, CONTACT
     end, following = first_fall(root, s), regime
     if end >= 0.0:
         s, following = end, OUTSIDE
     if inner > 0:
-        margin = 4.0 * EPS * c * math.sqrt(motion.inverse_mass) * run.memory1
+        margin = 4.0 * EPS * c * math.sqrt(numbers.inverse_mass) * run.memory1
         end = first_polynomial_root(series.scalars[LETS_GO], -1.0 if regime == CONTACT else 1.0, s, margin)
         if 0.0 <= end < s:
             s, following = end, INSIDE if regime == CONTACT else CONTACT
     length = horner(clock, 1.0, 0.0, s)[0]
     if length > limit:
-        s, length, following = series_variable(motion, limit, s, series), limit, regime
+        s, length, following = series_variable(numbers, limit, s, series), limit, regime
     run.memory0 = horner(root, 1.0, 0.0, s)[0]
     return s, length, following
 
 
 @kernel
-def height_over(motion, run, weight, own, series, out):
+def height_over(numbers, run, weight, own, series, out):
     """The series of the height over another stop, in `out`; see ``contact.touch``."""
     rows = series.rows
     for n in range(ORDER + 1):
@@ -289,12 +290,12 @@ def height_over(motion, run, weight, own, series, out):
 
 
 @kernel
-def state(motion, run, s, series, u, v):
+def state(numbers, run, s, series, u, v):
     """Deviations of all modes at sigma = `s`, in `u` and `v`."""
     powers = series.scalars[POWERS]
     powers_of(s, powers)
     weighted_rows(powers, 0, 1, series.rows, ORDER + 1, series.sums)
-    at_v = series.sums.size - motion.modes.shape[1]
+    at_v = series.sums.size - numbers.modes.shape[1]
     for k in range(u.size):
-        u[k] = series.sums[at_v - motion.modes.shape[1] + k]
+        u[k] = series.sums[at_v - numbers.modes.shape[1] + k]
         v[k] = series.sums[at_v + k]

@@ -13,8 +13,8 @@ stops, and impulses that take them off, G p = w, the hops end after W = 2 w p/((
 
 import numpy as np
 
-from contact.flight.modal_flow import tip_rounding
-from contact.flight.motion import DECAY, STACKED, WEIGHT, seen_from
+from contact.flight.numbers import DECAY, STACKED, WEIGHT, seen_from
+from contact.flight.tip import tip_rounding
 from contact.machine.compiled import kernel
 from contact.touch.impulses import DEPENDENT, complementary
 from contact.touch.newton import STEADY_PULL, STEADY_WANTED, acceleration_rounding, low_hop
@@ -24,18 +24,18 @@ from contact.trajectory import CONTACT, OUTSIDE, SUSTAINED
 
 
 @kernel
-def rounding_of_pull(motion, stops, j, u, v, sets):
+def rounding_of_pull(numbers, stops, j, u, v, sets):
     """Bound of the rounding error of the acceleration over stop `j` [m/s^2]."""
-    total = acceleration_rounding(seen_from(motion, j), u, v)
+    total = acceleration_rounding(seen_from(numbers, j), u, v)
     for i in range(stops.size):
         if stops[i].regime == CONTACT:
-            other = seen_from(motion, i)
+            other = seen_from(numbers, i)
             total += abs(sets.coupling[i, j]) * other.number0 * tip_rounding(other, u, v)
     return 4.0 * total
 
 
 @kernel
-def settle(motion, clock, stops, u, v, sets):
+def settle(numbers, clock, stops, u, v, sets):
     """Decide over all stops at rest, regime SUSTAINED: they stay so, or are OUTSIDE with the order at which
     the point leaves.  A stop with an event has a force that falls through zero."""
     candidates, count = np.empty(stops.size, np.int64), 0
@@ -47,7 +47,7 @@ def settle(motion, clock, stops, u, v, sets):
     if count == 0:
         return
     pull, push = np.empty(count), np.empty(count)
-    fill(motion, clock, stops, u, v, 2, sets)
+    fill(numbers, clock, stops, u, v, 2, sets)
     for p in range(count):
         pull[p] = 2.0 * sets.heights[candidates[p], 2]
     complementary(sets.coupling, candidates, count, pull, push)
@@ -56,20 +56,20 @@ def settle(motion, clock, stops, u, v, sets):
         j, left = candidates[p], pull[p]
         for q in range(count):
             left -= sets.coupling[j, candidates[q]] * push[q]
-        bound = rounding_of_pull(motion, stops, j, u, v, sets)
+        bound = rounding_of_pull(numbers, stops, j, u, v, sets)
         if push[p] * sets.coupling[j, j] > bound and sets.event[j] != CHANGES:
             stops[j].regime, stops[j].contact_order = SUSTAINED, 0
         elif not left < -bound or sets.event[j] == CHANGES:
             candidates[unsure] = j
             unsure += 1
     if unsure > 0:
-        settle_by_jerk(motion, clock, stops, u, v, candidates, unsure, sets)
+        settle_by_jerk(numbers, clock, stops, u, v, candidates, unsure, sets)
 
 
 @kernel
-def settle_by_jerk(motion, clock, stops, u, v, unsure, count, sets):
+def settle_by_jerk(numbers, clock, stops, u, v, unsure, count, sets):
     """Decide over the stops `unsure`, beside those that stay: see `settle`."""
-    held = fill(motion, clock, stops, u, v, 3, sets)
+    held = fill(numbers, clock, stops, u, v, 3, sets)
     members, inverse, free = sets.members, sets.inverse, np.empty((count, count))
     for p in range(count):
         for q in range(count):
@@ -96,19 +96,19 @@ def settle_by_jerk(motion, clock, stops, u, v, unsure, count, sets):
         j, left = unsure[at[p]], jerk[p]
         for q in range(size):
             left -= free[at[p], at[q]] * push[q]
-        bound = motion.fastest * rounding_of_pull(motion, stops, j, u, v, sets)
+        bound = numbers.fastest * rounding_of_pull(numbers, stops, j, u, v, sets)
         leaves = push[p] * free[at[p], at[p]] <= bound and (left < -bound or sets.event[j] == CHANGES)
         stops[j].regime, stops[j].contact_order = (OUTSIDE, 3) if leaves else (SUSTAINED, 0)
 
 
 @kernel
-def hops_end(motion, run, stops, j, speed, u, v, sets):
+def hops_end(numbers, run, stops, j, speed, u, v, sets):
     """Whether hops of this `speed` at stop `j` are a stay, see ``contact.touch.newton``.
 
     No other stop may be met before they end.
     """
-    fill(motion, run.clock, stops, u, v, ORDER, sets)
-    seen, height = seen_from(motion, j), sets.heights[j]
+    fill(numbers, run.clock, stops, u, v, ORDER, sets)
+    seen, height = seen_from(numbers, j), sets.heights[j]
     pull = 2.0 * height[2]
     verdict = low_hop(seen, run.clock, pull, speed, tip_rounding(seen, u, v))
     if verdict != STEADY_WANTED:
@@ -132,15 +132,15 @@ def hops_end(motion, run, stops, j, speed, u, v, sets):
 
 
 @kernel
-def hopping(motion, clock, stops, speeds, u, v, sets):
+def hopping(numbers, clock, stops, speeds, u, v, sets):
     """W (1 - e) of hops that begin with these `speeds` over stops that then hold the points [s], and the rate
     at which they end earlier, as a part of W over W [1/s].
 
-    The state (u, v) is that of the rest at which they end.  Row IMPULSE of ``Sets.numbers`` is filled with
+    The state (u, v) is that of the rest at which they end.  Row IMPULSE of ``Sets.values`` is filled with
     the impulses that take the speeds off, at each stop that holds its point.  Without a pull W is zero.
     """
-    held, given = fill(motion, clock, stops, u, v, 3, sets), sets.numbers[IMPULSE]
-    decay, modes, mass, pull, rise, drag = motion.modes[DECAY], motion.modes, 0.0, 0.0, 0.0, 0.0
+    held, given = fill(numbers, clock, stops, u, v, 3, sets), sets.values[IMPULSE]
+    decay, modes, mass, pull, rise, drag = numbers.modes[DECAY], numbers.modes, 0.0, 0.0, 0.0, 0.0
     given[:] = 0.0
     for a in range(held):
         j = sets.members[a]
@@ -159,7 +159,7 @@ def hopping(motion, clock, stops, speeds, u, v, sets):
             x = 0.0
             for a in range(held):
                 x += given[sets.members[a]] * sets.coupling[sets.members[a], i]
-            drag += seen_from(motion, i).number1 * x * x
+            drag += seen_from(numbers, i).number1 * x * x
     if not (mass > 0.0 and pull > 0.0):
         return 0.0, 0.0
     return 2.0 * mass / pull, (rise / pull + 0.5 * drag / mass) / 3.0

@@ -19,7 +19,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from contact.flight.modal_flow import tip_state
+from contact.flight.tip import tip_state
 from contact.machine.compiled import aligned, inlined, kernel, part
 from contact.trajectory import CONTACT
 
@@ -55,48 +55,48 @@ def fitted(series, order, columns):
 
 
 @part
-def strike(motion, run, u, v, approach):
+def strike(numbers, run, u, v, approach):
     """A touch under a force law: the contact begins at d = 0; see ``contact.touch``."""
     run.memory0, run.memory1 = 0.0, -1.0
     return CONTACT, math.nan, 0.0, math.nan
 
 
 @part
-def leave(motion, run, u, v):
+def leave(numbers, run, u, v):
     """The release of a force law: the next flight starts on the wall with a velocity."""
     run.contact_order = 1
-    return tip_state(motion, run.clock, u, v)[1]
+    return tip_state(numbers, run.clock, u, v)[1]
 
 
 @part
-def saltation(motion, vary, before, after, tangent):
+def saltation(numbers, vary, before, after, tangent):
     """No immediate effect: the tangents have gone through the contact with its series."""
 
 
 @part
-def inside(motion, vary, now, length, tangent):
+def inside(numbers, vary, now, length, tangent):
     """No more effect: the tangents have gone up to this time with the series."""
 
 
 @part
-def joins(motion):
+def joins(numbers):
     """Whether contacts of this law are followed while others are closed: not without more."""
     return False
 
 
 @part
-def coefficient(motion, n, depth):
+def coefficient(numbers, n, depth):
     """No series of its own beside others."""
     return math.nan
 
 
-def acceleration(force, motion, free, q, rate):
+def acceleration(force, numbers, free, q, rate):
     """The acceleration `free` of the modes less that by the push of the stop, under the `force` of a law."""
-    depth = motion.tip(q) - motion.gap
-    return free - motion.phi * force(motion, depth, motion.tip(rate)) if depth > 0.0 else free
+    depth = numbers.tip(q) - numbers.gap
+    return free - numbers.phi * force(numbers, depth, numbers.tip(rate)) if depth > 0.0 else free
 
 
-def repeated_touch(motion, speed, period):
+def repeated_touch(numbers, speed, m):
     """No closed form."""
     return None
 

@@ -21,9 +21,9 @@ import numpy as np
 
 from contact import touch
 from contact.flight.elementary import EPS, sine_cosine
-from contact.flight.modal_flow import tip_rounding, tip_state
-from contact.flight.motion import DECAY, LOAD, NUMBERS, SQUARE, STACKED, WEIGHT, seen_from
+from contact.flight.numbers import DECAY, LOAD, NUMBERS, SQUARE, STACKED, WEIGHT, seen_from
 from contact.flight.polynomial_root import first_polynomial_root
+from contact.flight.tip import tip_rounding, tip_state
 from contact.machine.compiled import aligned, kernel, part
 from contact.touch.impulses import inverse_of
 from contact.touch.newton import acceleration_rounding
@@ -35,7 +35,7 @@ PASSIVE = 4  # order of a stop whose point rests because others hold it: it give
 CHANGES, LEAVES = 1, 2
 """Events of a stop: it is met, or its force ends or begins; its point leaves from behind the wall."""
 
-SPEED, AFTER, IMPULSE, LOSS, RESTITUTION, PULL, ROOT = range(7)  # rows of `Sets.numbers`
+SPEED, AFTER, IMPULSE, LOSS, RESTITUTION, PULL, ROOT = range(7)  # rows of `Sets.values`
 
 
 class Sets(NamedTuple):
@@ -48,15 +48,15 @@ class Sets(NamedTuple):
     inverse: np.ndarray  # of G over the stops that hold their point at rest, by their places in `members`
     members: np.ndarray  # numbers of some stops
     event: np.ndarray  # what happens at a stop at the end of a step: 0, CHANGES or LEAVES
-    numbers: np.ndarray  # of the members, or of each stop, shape (7, stops)
+    values: np.ndarray  # of the members, or of each stop, shape (7, stops)
     states: np.ndarray  # ``contact.touch.passage.STATE`` of each stop, of which regime and order count
 
 
 @kernel
-def new_sets(motion, states):
+def new_sets(numbers, states):
     """A workspace of zeros for stops with these `states`, with their coupling."""
     count = states.size
-    coupling, modes = np.zeros((count, count)), motion.modes
+    coupling, modes = np.zeros((count, count)), numbers.modes
     for i in range(count):
         for j in range(count):
             for k in range(modes.shape[1]):
@@ -104,12 +104,12 @@ def resting(stops, sets):
 
 
 @kernel
-def fill(motion, clock, stops, u, v, order, sets):
+def fill(numbers, clock, stops, u, v, order, sets):
     """The series from (u, v) at the drive time `clock` [s], up to this order of modes and heights.
 
     Returns the number of stops that hold their point at rest, see `resting`.
     """
-    modes, w, rows, heights, forces = motion.modes, motion.drive, sets.rows, sets.heights, sets.forces
+    modes, w, rows, heights, forces = numbers.modes, numbers.drive, sets.rows, sets.heights, sets.forces
     decay, square, load, count = modes[DECAY], modes[SQUARE], modes[LOAD], resting(stops, sets)
     sine, cosine = sine_cosine(w * clock, 0.0)
     for k in range(u.size):
@@ -131,15 +131,15 @@ def fill(motion, clock, stops, u, v, order, sets):
         for j in range(stops.size):
             forces[j, n], regime = 0.0, stops[j].regime
             if regime == CONTACT or regime == INSIDE:
-                forces[j, n] = touch.coefficient(seen_from(motion, j), n, heights[j])
+                forces[j, n] = touch.coefficient(seen_from(numbers, j), n, heights[j])
             if regime == CONTACT:
                 push_back(modes, j, inverse * forces[j, n], new)
         for a in range(count):
             member = sets.members[a]
-            sets.numbers[PULL, a] = (heights[member, n + 2] + at_stop(modes, member, new)) / inverse
+            sets.values[PULL, a] = (heights[member, n + 2] + at_stop(modes, member, new)) / inverse
         for a in range(count):
             for b in range(count):
-                forces[sets.members[a], n] += sets.inverse[a, b] * sets.numbers[PULL, b]
+                forces[sets.members[a], n] += sets.inverse[a, b] * sets.values[PULL, b]
         for a in range(count):
             push_back(modes, sets.members[a], inverse * forces[sets.members[a], n], new)
         for j in range(stops.size):
@@ -148,7 +148,7 @@ def fill(motion, clock, stops, u, v, order, sets):
 
 
 @kernel
-def longest_step(motion, stops, u, v, sets):
+def longest_step(numbers, stops, u, v, sets):
     """Longest time over which the neglected terms stay below rounding [s]; NaN if the series overflows."""
     stored, largest = 0.0, 0.0
     for j in range(stops.size):
@@ -157,7 +157,7 @@ def longest_step(motion, stops, u, v, sets):
             stored += abs(sets.forces[j, 0] * sets.heights[j, 0])
     if not largest < OVERFLOW:
         return math.nan
-    h, speed = longest_of_modes(motion, stored, u, v, sets.rows)
+    h, speed = longest_of_modes(numbers, stored, u, v, sets.rows)
     for j in range(stops.size):
         if stops[j].regime == CONTACT or stops[j].regime == SUSTAINED:
             mobility = math.sqrt(sets.coupling[j, j])
@@ -179,17 +179,17 @@ def touch_of(height, order, h, margin):
 
 
 @kernel
-def step(motion, clock, stops, u, v, limit, sets):
+def step(numbers, clock, stops, u, v, limit, sets):
     """One step of the contacts from (u, v), at most `limit` [s]; returns its length, or NaN without one.
 
     It ends at the first event of a stop; `event` holds all that come at this very instant.
     """
-    count, first = fill(motion, clock, stops, u, v, ORDER, sets), -1.0
-    h = min(longest_step(motion, stops, u, v, sets), limit)
+    count, first = fill(numbers, clock, stops, u, v, ORDER, sets), -1.0
+    h = min(longest_step(numbers, stops, u, v, sets), limit)
     if not h > EPS * clock:
         return math.nan
     for j in range(stops.size):
-        seen, regime, roots = seen_from(motion, j), stops[j].regime, sets.numbers[ROOT]
+        seen, regime, roots = seen_from(numbers, j), stops[j].regime, sets.values[ROOT]
         margin, leaves, roots[j], sets.event[j] = tip_rounding(seen, u, v), -1.0, -1.0, 0
         if regime == OUTSIDE:
             roots[j] = touch_of(sets.heights[j], stops[j].contact_order, h, margin)
@@ -203,7 +203,7 @@ def step(motion, clock, stops, u, v, limit, sets):
             for a in range(count):
                 for b in range(count):
                     if sets.members[a] == j:
-                        pull = acceleration_rounding(seen_from(motion, sets.members[b]), u, v)
+                        pull = acceleration_rounding(seen_from(numbers, sets.members[b]), u, v)
                         margin += abs(sets.inverse[a, b]) * pull
             roots[j] = first_polynomial_root(sets.forces[j], -1.0, h, margin)
         if leaves >= 0.0 and (roots[j] < 0.0 or leaves <= roots[j]):
@@ -211,22 +211,22 @@ def step(motion, clock, stops, u, v, limit, sets):
         if roots[j] >= 0.0 and (first < 0.0 or roots[j] < first):
             first = roots[j]
     for j in range(stops.size):
-        at_once = first >= 0.0 and sets.numbers[ROOT, j] == first
+        at_once = first >= 0.0 and sets.values[ROOT, j] == first
         sets.event[j] = max(sets.event[j], CHANGES) if at_once else 0
     return first if first >= 0.0 else h
 
 
 @kernel
-def hold(motion, clock, stops, u, v, sets):
+def hold(numbers, clock, stops, u, v, sets):
     """Put the points that rest on their stops there, at rest."""
-    count, numbers = resting(stops, sets), sets.numbers
+    count, values = resting(stops, sets), sets.values
     for a in range(count):
-        seen = seen_from(motion, sets.members[a])
-        numbers[SPEED, a], numbers[AFTER, a], _pull = tip_state(seen, clock, u, v)
+        seen = seen_from(numbers, sets.members[a])
+        values[SPEED, a], values[AFTER, a], _pull = tip_state(seen, clock, u, v)
     for a in range(count):
         height, rate = 0.0, 0.0
         for b in range(count):
-            height += sets.inverse[a, b] * sets.numbers[SPEED, b]
-            rate += sets.inverse[a, b] * sets.numbers[AFTER, b]
-        push_back(motion.modes, sets.members[a], height, u)
-        push_back(motion.modes, sets.members[a], rate, v)
+            height += sets.inverse[a, b] * sets.values[SPEED, b]
+            rate += sets.inverse[a, b] * sets.values[AFTER, b]
+        push_back(numbers.modes, sets.members[a], height, u)
+        push_back(numbers.modes, sets.members[a], rate, v)

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from contact.flight.motion import DECAY, LOAD, SQUARE, WEIGHT
+from contact.flight.numbers import DECAY, LOAD, SQUARE, WEIGHT
 from contact.flight.variation import DRIVE, NUMBER0, NUMBER1, drive_now, parameter_changes, tip_changes
 from contact.machine.compiled import aligned, kernel
 from contact.machine.vector_loops import LANES, weighted_rows
@@ -79,7 +79,7 @@ def add_law_changes(vary, space, order, columns):
 @kernel
 def add_tip_changes(vary, space, order, columns):
     """Add the changes of y and y' of this order that come from the parameters directly."""
-    n, m, count = vary.motion.size, space.force.size, len(vary.scalars)
+    n, m, count = vary.numbers.size, space.force.size, len(vary.scalars)
     for p in range(count):
         row = space.rows[order].reshape((2 * n + 2, m))[:, columns]  # the motion itself
         y, rate = parameter_changes(vary, p, row[2 * n], row[2 * n + 1], 1.0 if order == 0 else 0.0)
@@ -91,13 +91,13 @@ def add_tip_changes(vary, space, order, columns):
 
 
 @kernel
-def next_tangents(motion, space, order):
+def next_tangents(numbers, space, order):
     """Compute the next order of all tangents from the sums over all orders so far."""
-    n, w, force, inverse = motion.size, motion.drive, space.force, 1.0 / (order + 1.0)
+    n, w, force, inverse = numbers.size, numbers.drive, space.force, 1.0 / (order + 1.0)
     shape = (2 * n + 2, force.size)
     sums, fresh = space.sums.reshape(shape), space.rows[order + 1].reshape(shape)
     for k in range(n):
-        c, o2, phi = motion.modes[DECAY, k], motion.modes[SQUARE, k], motion.modes[WEIGHT, k]
+        c, o2, phi = numbers.modes[DECAY, k], numbers.modes[SQUARE, k], numbers.modes[WEIGHT, k]
         ru, rv, u, v = sums[k], sums[n + k], fresh[k], fresh[n + k]
         for j in range(force.size):
             u[j] = inverse * rv[j]
@@ -111,11 +111,16 @@ def next_tangents(motion, space, order):
 @kernel
 def add_sources(vary, space, order, columns):
     """Add the sources of the parameters to the next order, and a constant load to the motion itself."""
-    n, m, inverse, force = vary.motion.size, space.force.size, 1.0 / (order + 1.0), space.weights.force[order]
+    n, m, inverse, force = (
+        vary.numbers.size,
+        space.force.size,
+        1.0 / (order + 1.0),
+        space.weights.force[order],
+    )
     shape, start = (2 * n + 2, m), columns - len(vary.scalars)
     sums, fresh = space.sums.reshape(shape), space.rows[order + 1].reshape(shape)
     for k in range(n):
-        fresh[n + k, columns] += inverse * vary.motion.modes[LOAD, k] * space.weights.time[order]
+        fresh[n + k, columns] += inverse * vary.numbers.modes[LOAD, k] * space.weights.time[order]
         for p in range(columns - start):
             pull = vary.square[p, k] * sums[k, columns] + vary.decay[p, k] * sums[n + k, columns]
             fresh[n + k, start + p] -= inverse * (pull + vary.weight[p, k] * force)
@@ -131,8 +136,8 @@ def tangent_step(vary, space, terms, end, tangent, before):
 
     The first `terms` terms of the weights of time, depth and rate are not zero.
     """
-    motion, response, (size, columns) = vary.motion, vary.response, tangent.shape
-    m, order, n = space.force.size, space.powers.size - 1, motion.size
+    numbers, response, (size, columns) = vary.numbers, vary.response, tangent.shape
+    m, order, n = space.force.size, space.powers.size - 1, numbers.size
     start = space.rows[0].reshape((size, m))
     start[:, :columns] = tangent
     if len(vary.scalars) > 0:
@@ -140,7 +145,7 @@ def tangent_step(vary, space, terms, end, tangent, before):
         start[2 * n, columns], start[2 * n + 1, columns] = drive_now(vary, clock)
         start[:n, columns], start[n : 2 * n, columns] = u, v
     for i in range(order):
-        tip_changes(motion, response, space.rows[i].reshape((size, m)), space.height[i], space.rate[i])
+        tip_changes(numbers, response, space.rows[i].reshape((size, m)), space.height[i], space.rate[i])
         if len(vary.scalars) > 0:
             add_tip_changes(vary, space, i, columns)
         sums_of(space.weights.depth, terms, i, space.height, space.force)
@@ -150,7 +155,7 @@ def tangent_step(vary, space, terms, end, tangent, before):
         if len(vary.scalars) > 0:
             add_law_changes(vary, space, i, columns)
         sums_of(space.weights.time, terms, i, space.rows, space.sums)
-        next_tangents(motion, space, i)
+        next_tangents(numbers, space, i)
         if len(vary.scalars) > 0:
             add_sources(vary, space, i, columns)
     powers_of(end, space.powers)

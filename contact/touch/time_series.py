@@ -11,7 +11,8 @@ digit in a mode that fast and nothing in the others.  A higher order would save 
 import math
 
 from contact.flight.elementary import EPS, sine_cosine
-from contact.flight.modal_flow import speed_scale, tip_steady, tip_sum
+from contact.flight.modal_flow import speed_scale
+from contact.flight.tip import tip_steady, tip_sum
 from contact.machine.compiled import kernel, part
 from contact.machine.vector_loops import next_order, weighted_rows
 from contact.touch.exchange import UNIFORM, exchange_of
@@ -34,18 +35,18 @@ spring."""
 
 
 @part
-def series_size(motion):
+def series_size(numbers):
     """Order and columns of the series."""
-    return ORDER, motion.modes.shape[1]
+    return ORDER, numbers.modes.shape[1]
 
 
 @part
-def begin(motion, base, u, v, series):
+def begin(numbers, base, u, v, series):
     """The first two orders of a step from (u, v) at drive time `base` [s]."""
-    rows, depth, steady, w = series.rows, series.scalars[DEPTH], series.scalars[STEADY], motion.drive
-    depth[0], depth[1], _acceleration = tip_steady(motion, base)
-    steady[0], steady[1] = depth[0] - motion.level, depth[1]
-    depth[0], depth[1] = tip_sum(motion, depth[0], u), tip_sum(motion, depth[1], v)
+    rows, depth, steady, w = series.rows, series.scalars[DEPTH], series.scalars[STEADY], numbers.drive
+    depth[0], depth[1], _acceleration = tip_steady(numbers, base)
+    steady[0], steady[1] = depth[0] - numbers.level, depth[1]
+    depth[0], depth[1] = tip_sum(numbers, depth[0], u), tip_sum(numbers, depth[1], v)
     for k in range(u.size):
         rows[0, k] = u[k]
         rows[1, k] = v[k]
@@ -55,18 +56,18 @@ def begin(motion, base, u, v, series):
 
 
 @part
-def extend(motion, n, push, series):
+def extend(numbers, n, push, series):
     """Compute order n + 2 of all modes and of d from the force coefficient `push` of order n."""
     scale, lift = 1.0 / ((n + 1.0) * (n + 2.0)), 1.0 if n == 0 else 0.0
-    tip = next_order(motion.modes, n + 1.0, scale, push, lift, n, series.rows)
+    tip = next_order(numbers.modes, n + 1.0, scale, push, lift, n, series.rows)
     series.scalars[DEPTH, n + 2] = series.scalars[STEADY, n + 2] + tip
 
 
 @part
-def free_pull(motion, n, series):
+def free_pull(numbers, n, series):
     """Order n of the tip acceleration without a force."""
     divisor, lift = (n + 1.0) * (n + 2.0), 1.0 if n == 0 else 0.0
-    tip = next_order(motion.modes, n + 1.0, 1.0 / divisor, 0.0, lift, n, series.rows)
+    tip = next_order(numbers.modes, n + 1.0, 1.0 / divisor, 0.0, lift, n, series.rows)
     return divisor * (series.scalars[STEADY, n + 2] + tip)
 
 
@@ -80,20 +81,20 @@ def largest(row):
 
 
 @part
-def longest_of_modes(motion, stored, u, v, rows):
+def longest_of_modes(numbers, stored, u, v, rows):
     """Longest time by the last terms of the modes [s], and the size of the speeds; see `longest_step`."""
-    scale = speed_scale(motion, u, v)
+    scale = speed_scale(numbers, u, v)
     speed = math.sqrt(scale * scale + stored)
     top, below = largest(rows[ORDER]), largest(rows[ORDER - 1])
     allowed = TOLERANCE * speed
     power = min(
         log_longest(ORDER * top, ORDER - 1, allowed), log_longest((ORDER - 1.0) * below, ORDER - 2, allowed)
     )
-    return min(math.exp(power), motion.period), speed
+    return min(math.exp(power), numbers.period), speed
 
 
 @kernel
-def longest_step(motion, stored, u, v, series):
+def longest_step(numbers, stored, u, v, series):
     """Longest time over which the neglected terms stay below rounding [s]; NaN if the series overflows.
 
     `stored` is twice the energy in the stop at the start of the step [J].
@@ -101,20 +102,20 @@ def longest_step(motion, stored, u, v, series):
     depth, force = series.scalars[DEPTH], series.scalars[FORCE]
     if not (abs(depth[ORDER]) < OVERFLOW and abs(force[ORDER - 2]) < OVERFLOW):
         return math.nan
-    h, speed = longest_of_modes(motion, stored, u, v, series.rows)
-    return limited_by_force(h, force, ORDER - 2, math.sqrt(motion.inverse_mass), speed, EDGE)
+    h, speed = longest_of_modes(numbers, stored, u, v, series.rows)
+    return limited_by_force(h, force, ORDER - 2, math.sqrt(numbers.inverse_mass), speed, EDGE)
 
 
 @part
-def series_variable(motion, t, end, series):
+def series_variable(numbers, t, end, series):
     """The variable of the series a time `t` [s] into a step: this time itself."""
     return t
 
 
 @kernel
-def height_over(motion, run, weight, own, series, out):
+def height_over(numbers, run, weight, own, series, out):
     """The series of the height over another stop, in `out`; see ``contact.touch``."""
-    w = motion.drive
+    w = numbers.drive
     sine, cosine = sine_cosine(w * run.clock, 0.0)
     out[0], out[1] = own[1] * sine + own[2] * cosine, w * (own[1] * cosine - own[2] * sine)
     for n in range(ORDER - 1):
@@ -123,7 +124,7 @@ def height_over(motion, run, weight, own, series, out):
 
 
 @kernel
-def state(motion, run, h, series, u, v):
+def state(numbers, run, h, series, u, v):
     """Deviations of all modes a time `h` [s] into the step, in `u` and `v`."""
     powers, slopes = series.scalars[POWERS], series.scalars[SLOPES]
     powers_of(h, powers)
@@ -138,7 +139,7 @@ def state(motion, run, h, series, u, v):
 
 
 @kernel
-def exchange(motion, run, span, series, known):
+def exchange(numbers, run, span, series, known):
     """What the tip gives to the stop: work, impulse and largest force; see ``contact.touch``."""
     depth, rate = series.scalars[DEPTH], series.scalars[RATE]
     if run.regime == INSIDE:

@@ -9,9 +9,10 @@ from tip_judge import PLANTED, Real, Signal, flights, judge, search, with_gap
 
 from contact.flight.crossing import CROSSES, FREE, GRAZE_TOLERANCE, GRAZES, UNRESOLVED
 from contact.flight.elementary import EPS
-from contact.flight.modal_flow import propagate, tip_rounding
+from contact.flight.modal_flow import propagate
+from contact.flight.tip import tip_rounding
 from contact.orbits import Shooting
-from contact.orbits.families.family import peaks
+from contact.orbits.families.touch_orbit import peaks
 
 pytestmark = pytest.mark.skipif(
     np.finfo(Real).eps > 2e-19, reason="the judge needs a long double of at least 64 bits"

@@ -10,7 +10,7 @@ from tip_judge import PLANTED, Real, Signal, judge, random_deviation, random_osc
 
 from contact.flight.crossing import CROSSES, FREE, GRAZES, UNRESOLVED
 from contact.flight.elementary import EPS
-from contact.flight.modal_flow import tip_bound, tip_rounding, tip_state
+from contact.flight.tip import tip_bound, tip_rounding, tip_state
 from contact.touch.newton import acceleration_rounding, newton_impact
 
 pytestmark = pytest.mark.skipif(

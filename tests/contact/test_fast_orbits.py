@@ -8,7 +8,7 @@ from oscillators import equation_1, modes_on_stop, newton, slow
 
 from contact import BranchEnded, ImpactOscillator, MaximalFamily, State, StroboscopicMap
 from contact.orbits import Shooting, fold_of, orbit_end, settle
-from contact.orbits.branches.family_curve import whole_branch
+from contact.orbits.branches.amplitude_curve import whole_branch
 
 pytestmark = pytest.mark.filterwarnings("ignore::beam.SuspiciousValue")
 PARTS = {m: np.arange(0.505, m + 1.0, 0.02) for m in (1, 2, 3)}

@@ -17,7 +17,8 @@ from contact.flight.bounds import (
     without_others,
 )
 from contact.flight.crossing import CROSSES, FREE, first_crossing
-from contact.flight.modal_flow import load_state, new_flight, tip_rounding
+from contact.flight.modal_flow import load_state, new_flight
+from contact.flight.tip import tip_rounding
 from contact.flight.motion import Motion
 
 GAP = 0.02

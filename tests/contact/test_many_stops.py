@@ -27,7 +27,8 @@ from contact import (
 )
 from contact.flight.crossing import GRAZE_TOLERANCE
 from contact.flight.elementary import EPS
-from contact.flight.modal_flow import steady_motion, tip_rounding
+from contact.flight.modal_flow import steady_motion
+from contact.flight.tip import tip_rounding
 
 PROBLEMS = {one["name"]: one for one in json.loads(Path(__file__).with_name("many_stops.json").read_text())}
 SLOW = 1e-5

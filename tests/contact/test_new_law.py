@@ -19,7 +19,7 @@ LAW = '''"""N = k d^3 for d > 0, by the series in time."""
 from dataclasses import dataclass
 from typing import ClassVar
 import numpy as np
-from contact.flight.modal_flow import tip_rounding
+from contact.flight.tip import tip_rounding
 from contact.flight.polynomial_root import first_polynomial_root
 from contact.laws import ContactLaw
 from contact.machine.compiled import kernel, part

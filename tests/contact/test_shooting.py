@@ -12,7 +12,7 @@ from simulated_orbit import EQUATION_1, LAWS, beam, on_stop, sizes, touches
 
 from contact import HuntCrossley, NotPeriodic, StroboscopicMap
 from contact.orbits import KickFamily, Shooting, fold_of, follow, settle
-from contact.orbits.branches.family_curve import whole_branch
+from contact.orbits.branches.amplitude_curve import whole_branch
 from contact.orbits.families.equations import driven_at, shoot
 from contact.sensitivity.change import Sensitivities
 
@@ -192,6 +192,6 @@ def test_orbits_that_all_have_one_approach_velocity_are_refused(monkeypatch: pyt
         orbit = replace(near, oscillator=at, excess=at.excess)
         return orbit, rows @ (unknown - first[0]), rows + np.eye(4)[:2]
 
-    monkeypatch.setattr("contact.orbits.families.continuable_family.shoot", shot)
+    monkeypatch.setattr("contact.orbits.families.newton_family.shoot", shot)
     with pytest.raises(NotPeriodic, match="approach velocity"):
         plain.at_excess(near.excess + 1e-3, near)

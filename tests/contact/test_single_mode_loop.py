@@ -13,7 +13,7 @@ from tip_judge import Signal, highest
 from contact import StroboscopicMap
 from contact.engine.event_loop import DONE
 from contact.flight.crossing import FREE, first_crossing
-from contact.flight.modal_flow import tip_rounding, tip_state
+from contact.flight.tip import tip_rounding, tip_state
 from contact.maps.strobed_motion import strobed_motion, strobed_system
 
 

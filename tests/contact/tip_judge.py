@@ -12,7 +12,7 @@ from oscillators import modes_on_stop
 from contact import ImpactOscillator
 from contact.flight.crossing import CROSSES, FREE, GRAZE_TOLERANCE, GRAZES, first_crossing
 from contact.flight.elementary import EPS
-from contact.flight.modal_flow import tip_rounding
+from contact.flight.tip import tip_rounding
 from contact.flight.motion import LOAD, Motion
 
 Real = np.longdouble

@@ -8,7 +8,7 @@ import pytest
 from oscillators import slow
 
 from contact.orbits import Shooting, born, born_period, fold_excess, fold_of, orbit_end, settle
-from contact.orbits.branches.family_curve import whole_branch
+from contact.orbits.branches.amplitude_curve import whole_branch
 from studies.experiment.transitions.model import rows_at
 from studies.letter import PERIODS
 from studies.physics.descriptions import TITLES, strobed_at

@@ -3,7 +3,7 @@
 `curve`               a curve of orbits: its points, one next to another
 `branch`              a curve followed both ways
 `events`              folds, period doublings, tori, branch points and grazes, each verified
-`family_curve`        the curve of a family over the drive amplitude
+`amplitude_curve`     the curve of a family over the drive amplitude
 `continuation`        branches over the drive amplitude: `follow`, `fold_of`, `first_event`
 `path`                branches along any path p -> oscillator: `follow_path`
 `orbit_derivatives`   derivatives of an orbit with respect to parameters

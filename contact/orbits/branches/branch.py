@@ -24,8 +24,8 @@ from contact.orbits.branches.events import (
     refined,
     with_undecided,
 )
-from contact.orbits.families.equations import Point
-from contact.orbits.families.family import PeriodicOrbit
+from contact.orbits.families.newton import CurvePoint
+from contact.orbits.families.touch_orbit import PeriodicOrbit
 
 SMALLEST, MOST_STEPS = 1e-9, 5000
 """Step of arc length at which a branch is given up and to which a graze is located; and bound of steps."""
@@ -65,18 +65,18 @@ class Leg(NamedTuple):
     `ended` says on the last leg why the branch ends.
     """
 
-    points: list[Point]
+    points: list[CurvePoint]
     events: list[Event]
     ended: str
 
 
-def walk(curve: Curve, first: Point, longest: float, stride: float) -> Iterator[Leg]:
+def walk(curve: Curve, first: CurvePoint, longest: float, stride: float) -> Iterator[Leg]:
     """The branch from `first` along its direction, leg by leg.
 
     Steps of arc length grow from `stride` to `longest` times the factor ``curve.stretch``.
     """
     here = looked = first  # events have been looked for up to `looked`
-    edges, step, firsts = list[Point](), stride, list[Point]()
+    edges, step, firsts = list[CurvePoint](), stride, list[CurvePoint]()
     if first.x[-1] == curve.ends[1 if first.direction[-1] > 0.0 else 0]:
         yield Leg([], [], "range")
         return
@@ -110,7 +110,7 @@ def walk(curve: Curve, first: Point, longest: float, stride: float) -> Iterator[
     yield Leg([], [], f"the bound of {MOST_STEPS} steps is used up")
 
 
-def _leg_between(curve: Curve, a: Point, b: Point, edges: list[Point]) -> Leg:
+def _leg_between(curve: Curve, a: CurvePoint, b: CurvePoint, edges: list[CurvePoint]) -> Leg:
     """The leg from `a` to its neighbour `b`.
 
     It ends at a branch point if the orbits behind it are those before it, some drive periods later.
@@ -127,7 +127,7 @@ def _leg_between(curve: Curve, a: Point, b: Point, edges: list[Point]) -> Leg:
     return Leg(points[1:], events, "")
 
 
-def _leg_to_edge(curve: Curve, looked: Point, here: Point, why: str) -> Leg:
+def _leg_to_edge(curve: Curve, looked: CurvePoint, here: CurvePoint, why: str) -> Leg:
     """The leg from `looked` to `here`, the last point before a graze, or before the branch is lost."""
     points = [here] if here is not looked else []
     if why == CROSSING:
@@ -142,7 +142,9 @@ def _leg_to_edge(curve: Curve, looked: Point, here: Point, why: str) -> Leg:
     return Leg([*points, beyond], events, "")
 
 
-def branch_of(curve: Curve, first: Point, longest: float, stride: float) -> tuple[Branch, list[Point]]:
+def branch_of(
+    curve: Curve, first: CurvePoint, longest: float, stride: float
+) -> tuple[Branch, list[CurvePoint]]:
     """The branch through `first` and its points; the side along the direction of `first` comes last."""
     sides = list[Leg]()
     for start in (first.oriented(-first.direction), first):
@@ -164,7 +166,7 @@ def branch_of(curve: Curve, first: Point, longest: float, stride: float) -> tupl
     ), points
 
 
-def _with_other_touches(curve: Curve, here: Point) -> Point | None:
+def _with_other_touches(curve: Curve, here: CurvePoint) -> CurvePoint | None:
     """The first point beyond a grazing orbit, with a touch more or less; None if there is none.
 
     It starts from the fastest touch, since the slowest one is about to be lost.
@@ -172,15 +174,15 @@ def _with_other_touches(curve: Curve, here: Point) -> Point | None:
     if not curve.admissible_only:
         return None
     here = curve.with_first_touch(here, int(np.argmax(here.orbit.approach)))
-    for touches in (here.orbit.impacts + 1, here.orbit.impacts - 1):
-        for length in ACROSS if touches else ():
-            there = curve.next_point(here, length, touches)
-            if isinstance(there, Point):
+    for impacts in (here.orbit.impacts + 1, here.orbit.impacts - 1):
+        for length in ACROSS if impacts else ():
+            there = curve.next_point(here, length, impacts)
+            if isinstance(there, CurvePoint):
                 return there
     return None
 
 
-def _closing(firsts: Sequence[Point], a: Point, b: Point) -> Point | None:
+def _closing(firsts: Sequence[CurvePoint], a: CurvePoint, b: CurvePoint) -> CurvePoint | None:
     """The first point of the curve, if the curve passes it between neighbours a and b in either direction.
 
     `firsts` holds that point, started from each of its touches.

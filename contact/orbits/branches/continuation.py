@@ -1,7 +1,7 @@
 """Families of periodic orbits followed over the drive amplitude, with their folds and other events.
 
 A family is followed in the arc length of its unknowns, of which the last is log v, v the approach velocity of
-the first touch (``contact.orbits.families.continuable_family``).  Down to grazing a step changes v by a
+the first touch (``contact.orbits.families.newton_family``).  Down to grazing a step changes v by a
 factor.  With several touches v can turn round along the curve (``contact.orbits.branches.branch``).
 """
 
@@ -12,20 +12,20 @@ import numpy as np
 
 from beam.parameters import InvalidValue, require_array, require_kind, require_within
 from contact.errors import ContactError, NotPeriodic
-from contact.orbits.branches.branch import SMALLEST, Branch, branch_of
-from contact.orbits.branches.events import Event
-from contact.orbits.branches.family_curve import (
+from contact.orbits.branches.amplitude_curve import (
     GREATEST_SPEED,
-    FamilyCurve,
+    AmplitudeCurve,
     at_graze,
     branch_ended,
     downhill,
     whole_branch,
 )
-from contact.orbits.families.continuable_family import ContinuableFamily, require_orbit
-from contact.orbits.families.family import PeriodicOrbit
+from contact.orbits.branches.branch import SMALLEST, Branch, branch_of
+from contact.orbits.branches.events import Event
 from contact.orbits.families.kick import SPEEDS
+from contact.orbits.families.newton_family import NewtonFamily, require_orbit
 from contact.orbits.families.single_impact import SingleImpactOrbit
+from contact.orbits.families.touch_orbit import PeriodicOrbit
 
 GREATEST_STEP = 10.0  # longest step of log v: over four decades at once
 
@@ -33,15 +33,15 @@ LOSSES = ("torus", "period doubling", "branch point", "undecided")
 """Events other than folds and grazings at which orbits can lose their stability."""
 
 
-def _require(family: ContinuableFamily, near: object = None) -> None:
+def _require(family: NewtonFamily, near: object = None) -> None:
     """Refuse what is no family to follow, and a `near` that is neither an orbit near it nor None."""
-    require_kind("family", family, ContinuableFamily, "a Shooting family")
+    require_kind("family", family, NewtonFamily, "a Shooting family")
     if near is not None:
         require_orbit(family, "near", near)
 
 
 def follow(
-    family: ContinuableFamily, start: PeriodicOrbit, *, low: float, high: float, step: float = 0.1
+    family: NewtonFamily, start: PeriodicOrbit, *, low: float, high: float, step: float = 0.1
 ) -> Branch:
     """The branch of a `family` through `start` between the approach velocities `low` and `high` [m/s].
 
@@ -57,7 +57,7 @@ def follow(
         raise InvalidValue(
             f"low and high are {low} and {high} m/s; they must enclose the start, {start.speed:g} m/s"
         )
-    curve = FamilyCurve(like=start, family=family, slowest=low, fastest=high)
+    curve = AmplitudeCurve(like=start, family=family, slowest=low, fastest=high)
     branch = branch_of(curve, curve.start(), step, step)[0]
     first, last = branch.orbits[0], branch.orbits[-1]
     return replace(
@@ -72,7 +72,7 @@ def _placed(ended: str, last: PeriodicOrbit) -> str:
     return f"{ended}; last orbit at {last.speed:.6g} m/s, excess {last.excess:.6g}"
 
 
-def first_event(family: ContinuableFamily, start: PeriodicOrbit, lowest: float) -> Event | None:
+def first_event(family: NewtonFamily, start: PeriodicOrbit, lowest: float) -> Event | None:
     """The event that ends the orbit `start` when the amplitude is lowered.
 
     None is returned if no event is met down to the excess `lowest` [1].  An orbit ends by "grazing" where one
@@ -95,7 +95,7 @@ def first_event(family: ContinuableFamily, start: PeriodicOrbit, lowest: float) 
     return Event(kind="grazing", orbit=last)
 
 
-def fold_of(family: ContinuableFamily, near: PeriodicOrbit | None = None) -> PeriodicOrbit | None:
+def fold_of(family: NewtonFamily, near: PeriodicOrbit | None = None) -> PeriodicOrbit | None:
     """The fold of smallest amplitude, where the family's downward scan ends.
 
     None is returned for one reason only: the branch has no fold.  It was followed to its graze, and up to
@@ -127,7 +127,7 @@ def fold_of(family: ContinuableFamily, near: PeriodicOrbit | None = None) -> Per
 
 
 def lowest_fold(
-    family: ContinuableFamily, near: PeriodicOrbit | None = None
+    family: NewtonFamily, near: PeriodicOrbit | None = None
 ) -> tuple[PeriodicOrbit | None, list[Event]]:
     """The fold of `fold_of`, or None and the events by which stable orbits end, by falling excess."""
     fold, losses = _fold_of_these_touches(family, near)
@@ -135,16 +135,16 @@ def lowest_fold(
         return fold, losses
     try:
         kick = family.kicks.fold()
-        if kick is None or kick.kick.touches == fold.impacts:
+        if kick is None or kick.kick.impacts == fold.impacts:
             return fold, losses
-        other = _fold_of_these_touches(replace(family, impacts=kick.kick.touches), None)[0]
+        other = _fold_of_these_touches(replace(family, impacts=kick.kick.impacts), None)[0]
     except ContactError:
         return fold, []
     return (other if other is not None and other.admissible else fold), []
 
 
 def _fold_of_these_touches(
-    family: ContinuableFamily, near: PeriodicOrbit | None
+    family: NewtonFamily, near: PeriodicOrbit | None
 ) -> tuple[PeriodicOrbit | None, list[Event]]:
     """The result of `lowest_fold` with as many touches as the family has."""
     _require(family, near)
@@ -166,7 +166,7 @@ def _fold_of_these_touches(
     return None, []
 
 
-def fold_of_the_kicks(family: ContinuableFamily) -> SingleImpactOrbit | None:
+def fold_of_the_kicks(family: NewtonFamily) -> SingleImpactOrbit | None:
     """The fold of the kick description at any speed of the search, the usual ones first."""
     found = family.kicks.fold()
     with suppress(NotPeriodic):  # a collision so fast that it does not end in time is no kick
@@ -175,7 +175,7 @@ def fold_of_the_kicks(family: ContinuableFamily) -> SingleImpactOrbit | None:
 
 
 def fold_along_frequency(
-    family: ContinuableFamily, frequencies: np.ndarray, near: PeriodicOrbit | None = None
+    family: NewtonFamily, frequencies: np.ndarray, near: PeriodicOrbit | None = None
 ) -> list[PeriodicOrbit | ContactError | None]:
     """The results of `fold_of` at `frequencies` [Hz], each started from the fold before.
 

@@ -14,8 +14,8 @@ import numpy as np
 
 from beam.parameters import Array, Refusal
 from contact.errors import ContactError
-from contact.orbits.families.equations import Equations, Iterate, Point, newton
-from contact.orbits.families.family import PeriodicOrbit, peaks
+from contact.orbits.families.newton import CurvePoint, Equations, Iterate, newton
+from contact.orbits.families.touch_orbit import PeriodicOrbit, peaks
 from contact.simulation import simulate
 
 BEND, TWIST, STRAIGHT = 0.3, 0.25, 5e-3
@@ -50,7 +50,7 @@ class Curve(ABC):
         """Whether the tip may touch the stop at no other time than in the touches of a point."""
 
     @abstractmethod
-    def equations(self, x: Array, touches: int) -> Equations:
+    def equations(self, x: Array, impacts: int) -> Equations:
         """The equations of orbits with so many touches, in the neighbourhood of `x`."""
 
     @abstractmethod
@@ -59,30 +59,30 @@ class Curve(ABC):
         (u, v), time since a strobe [s] and approach velocity [m/s]."""
 
     @abstractmethod
-    def parameter(self, point: Point) -> float:
+    def parameter(self, point: CurvePoint) -> float:
         """The parameter at a point."""
 
     def stretch(self, x: Array) -> float:
         """Factor of the longest step at `x`, where the unknowns are large."""
         return 1.0
 
-    def solve(self, x: Array, normal: Array, touches: int) -> Point:
+    def solve(self, x: Array, normal: Array, impacts: int) -> CurvePoint:
         """The point of the curve next to `x`, in the plane through it across `normal`."""
 
         def pick(there: Array, _: Iterate) -> tuple[float, Array]:
             return float(normal @ (there - x)), normal
 
-        return newton(self.equations(x, touches), x, pick)
+        return newton(self.equations(x, impacts), x, pick)
 
-    def at(self, x: Array, touches: int) -> Point:
+    def at(self, x: Array, impacts: int) -> CurvePoint:
         """The point next to `x` with the same last unknown, or the nearest one where that turns round."""
         try:
-            return self.solve(x, np.eye(x.size)[-1], touches)
+            return self.solve(x, np.eye(x.size)[-1], impacts)
         except ContactError:
-            rows = self.equations(x, touches)(x).rows
-            return self.solve(x, np.linalg.svd(rows)[-1][-1], touches)
+            rows = self.equations(x, impacts)(x).rows
+            return self.solve(x, np.linalg.svd(rows)[-1][-1], impacts)
 
-    def next_point(self, here: Point, length: float, touches: int) -> Point | str:
+    def next_point(self, here: CurvePoint, length: float, impacts: int) -> CurvePoint | str:
         """The next point of the curve, or a sentence that says why there is none.
 
         It lies a step of this `length` further on, or at the end of the range.  It must be a neighbour on the
@@ -95,7 +95,7 @@ class Curve(ABC):
         if to_end <= length:
             guess[-1], across = end, np.eye(guess.size)[-1]
         try:
-            there = self.solve(guess, across, touches).oriented(here.direction)
+            there = self.solve(guess, across, impacts).oriented(here.direction)
         except (ContactError, Refusal) as error:
             return str(error)
         if np.linalg.norm(there.x - guess) >= BEND * length:
@@ -105,18 +105,18 @@ class Curve(ABC):
             why_not = "a touch is gained"
         return why_not or replace(there, last=to_end <= length)
 
-    def with_first_touch(self, here: Point, touch: int) -> Point:
+    def with_first_touch(self, here: CurvePoint, touch: int) -> CurvePoint:
         """The same orbit, started from its touch number `touch`."""
         if touch == 0:
             return here
         orbit = here.orbit
-        hit = simulate(orbit.oscillator, orbit.state(), periods=orbit.period).impacts
+        hit = simulate(orbit.oscillator, orbit.state(), periods=orbit.m).impacts
         start, clock = hit.deviations_start[touch].ravel(), float(hit.clock[touch])
         x = self.unknowns(start, clock, float(hit.approach[touch]), here.x)
         return self.at(x, orbit.impacts)
 
 
-def why_no_neighbours(a: Point, b: Point) -> str:
+def why_no_neighbours(a: CurvePoint, b: CurvePoint) -> str:
     """Why two points are no neighbours on one curve, in words; "" if they are.
 
     The directions of both must lie along the way from `a` to `b`.

@@ -23,8 +23,8 @@ import numpy as np
 from beam.parameters import Array
 from contact.errors import ContactError
 from contact.orbits.branches.curve import Curve, why_no_neighbours
-from contact.orbits.families.equations import Point
-from contact.orbits.families.family import PeriodicOrbit
+from contact.orbits.families.newton import CurvePoint
+from contact.orbits.families.touch_orbit import PeriodicOrbit
 
 PLACE = 1e-12  # part of a step to which an event is located; a fold is exact to the square of it
 
@@ -68,7 +68,7 @@ class Event:
     x: Array = field(default_factory=lambda: np.empty(0), repr=False)
 
 
-def event_at(curve: Curve, kind: str, point: Point) -> Event:
+def event_at(curve: Curve, kind: str, point: CurvePoint) -> Event:
     """The event of this kind at a point of a curve."""
     return Event(kind=kind, orbit=point.orbit, parameter=curve.parameter(point), x=point.x)
 
@@ -93,7 +93,7 @@ def is_torus(orbit: PeriodicOrbit) -> bool:
     return bool(m[i[np.argmin(np.abs(1.0 - m[i] * m[j]))]].imag)
 
 
-TESTS: dict[str, Callable[[Point], float]] = {
+TESTS: dict[str, Callable[[CurvePoint], float]] = {
     "branch point": lambda point: point.determinant,
     "fold": lambda point: point.rate,
     "period doubling": lambda point: float(np.prod(point.orbit.multipliers + 1.0).real),
@@ -120,12 +120,12 @@ def passes(here: float, there: float) -> bool:
 class Arc:
     """The points of a curve between two neighbours, each given by its part of the chord."""
 
-    def __init__(self, curve: Curve, a: Point, b: Point) -> None:
+    def __init__(self, curve: Curve, a: CurvePoint, b: CurvePoint) -> None:
         self.curve, self.a, self.chord = curve, a, b.x - a.x
         self.length = float(np.linalg.norm(self.chord))
         self.seen = {0.0: a, 1.0: b}
 
-    def __call__(self, part: float) -> Point:
+    def __call__(self, part: float) -> CurvePoint:
         """The point of the curve in the plane across the chord at this part of it."""
         if part not in self.seen:
             normal = self.chord / self.length
@@ -134,7 +134,7 @@ class Arc:
             self.seen[part] = self.curve.solve(guess, normal, self.a.orbit.impacts).oriented(normal)
         return self.seen[part]
 
-    def root(self, test: Callable[[Point], float], place: float = PLACE) -> Point:
+    def root(self, test: Callable[[CurvePoint], float], place: float = PLACE) -> CurvePoint:
         """The point where `test` changes sign.
 
         For a test that is only a sign, return the last point on the +1 side.
@@ -146,7 +146,7 @@ class Arc:
         kept = (part for part in self.seen if test(self.seen[part]) != -1.0)
         return self.seen[min(kept, key=lambda part: abs(part - root))]
 
-    def middle(self) -> Point | None:
+    def middle(self) -> CurvePoint | None:
         """A point near the middle on the same curve, if there is one."""
         for part in MIDDLES:
             try:
@@ -156,12 +156,12 @@ class Arc:
                 continue
         return None
 
-    def on_curve(self, point: Point) -> bool:
+    def on_curve(self, point: CurvePoint) -> bool:
         """Whether both ends and a point between them are neighbours on one curve."""
         return not why_no_neighbours(self.a, point) and not why_no_neighbours(point, self.seen[1.0])
 
 
-def refined(curve: Curve, a: Point, b: Point, depth: int = 0) -> list[Point]:
+def refined(curve: Curve, a: CurvePoint, b: CurvePoint, depth: int = 0) -> list[CurvePoint]:
     """The point `a`, and points between it and its neighbour `b` that separate two folds in between.
 
     A cubic through the parameters and rates of both shows where the rate is least.  If it comes near zero
@@ -184,7 +184,7 @@ def refined(curve: Curve, a: Point, b: Point, depth: int = 0) -> list[Point]:
     return [*refined(curve, a, middle, depth + 1), *refined(curve, middle, b, depth + 1)]
 
 
-def events_between(curve: Curve, a: Point, b: Point, depth: int = 0) -> list[Event]:
+def events_between(curve: Curve, a: CurvePoint, b: CurvePoint, depth: int = 0) -> list[Event]:
     """The events from `a`, itself included, to its neighbour `b`, in their order along the curve.
 
     An event that is not sound is looked for again in both halves of the way.  A curve with `admissible_only`
@@ -215,7 +215,7 @@ def events_between(curve: Curve, a: Point, b: Point, depth: int = 0) -> list[Eve
     return sorted(found, key=lambda event: float(np.linalg.norm(event.x - a.x)))
 
 
-def _around_branch_point(between: Arc, point: Point) -> list[Event]:
+def _around_branch_point(between: Arc, point: CurvePoint) -> list[Event]:
     """A branch point, and the events before and behind it."""
     at = float((point.x - between.a.x) @ between.chord) / between.length**2
     aside, b = ASIDE / between.length, between.seen[1.0]
@@ -224,20 +224,20 @@ def _around_branch_point(between: Arc, point: Point) -> list[Event]:
     return [*before, event_at(between.curve, "branch point", point), *behind]
 
 
-def with_undecided(found: list[Event], edges: list[Point]) -> list[Event]:
+def with_undecided(found: list[Event], edges: list[CurvePoint]) -> list[Event]:
     """The events, "undecided" where one lies next to another one or to an edge; a graze stays a graze.
 
     Events next to a branch point, where the equations are singular, are left out.
     """
 
-    def near(event: Event, others: Sequence[Event | Point], distance: float) -> bool:
+    def near(event: Event, others: Sequence[Event | CurvePoint], distance: float) -> bool:
         return any(np.linalg.norm(other.x - event.x) < distance for other in others)
 
     crossings = [event for event in found if event.kind == "branch point"]
     kept = [event for event in found if event in crossings or not near(event, crossings, 2.0 * ASIDE)]
     marked = list[Event]()
     for event in kept:
-        others: list[Event | Point] = [*edges, *(other for other in kept if other is not event)]
+        others: list[Event | CurvePoint] = [*edges, *(other for other in kept if other is not event)]
         alone = event.kind == "grazing" or not near(event, others, CLOSE)
         marked.append(event if alone else replace(event, kind="undecided"))
     return marked

@@ -16,7 +16,7 @@ import numpy as np
 from beam.parameters import Array, require_kind
 from contact.errors import NoDerivative
 from contact.orbits.families.equations import drive_of, shoot, sizes_of, slopes_of, tip_slopes
-from contact.orbits.families.family import PeriodicOrbit
+from contact.orbits.families.touch_orbit import PeriodicOrbit
 from contact.sensitivity.change import Change, Sensitivities
 from contact.sensitivity.replay import Replay, deviation_rates_at_strobe
 from contact.simulation import simulate
@@ -69,7 +69,7 @@ class OrbitDerivatives:
 
     @cached_property
     def _run(self) -> Trajectory:
-        return simulate(self.orbit.oscillator, self.orbit.state(), periods=self.orbit.period)
+        return simulate(self.orbit.oscillator, self.orbit.state(), periods=self.orbit.m)
 
     @property
     def strobes(self) -> Array:
@@ -85,12 +85,12 @@ class OrbitDerivatives:
         orbit, changes, n = self.orbit, self.changes, self.orbit.oscillator.n_modes
         if not orbit.admissible:
             raise orbit.failure(NoDerivative, "the orbit meets the stop at another time than its touches")
-        replay, period, size = Replay(changes, self._run, orbit.state()), orbit.oscillator.period, 2 * n + 2
+        replay, m, size = Replay(changes, self._run, orbit.state()), orbit.oscillator.period, 2 * n + 2
         replay.tangent = np.eye(size, size + len(changes.changes))
         found = list[Array]()
         for j, q in enumerate(self.strobes, start=1):
-            tangent = replay.to(j * period)[: 2 * n]
-            rates = deviation_rates_at_strobe(orbit.oscillator, q, bool(replay.touching(j * period)))
+            tangent = replay.to(j * m)[: 2 * n]
+            rates = deviation_rates_at_strobe(orbit.oscillator, q, bool(replay.touching(j * m)))
             moved = tangent[:, :size] @ self.start + tangent[:, size:]
             moved += np.multiply.outer(rates, j * changes.period - self.time)
             found.append(moved + changes.steady(0.0))
@@ -101,7 +101,7 @@ def _solved(orbit: PeriodicOrbit, changes: Sensitivities, *, at_speed: bool) -> 
     """Derivatives of z with respect to the parameters, and last to the speed or the amplitude itself, shape
     (2 n_modes + 2, P + 1)."""
     n, sizes = orbit.deviations.size, sizes_of(orbit.oscillator)
-    flow = shoot(changes, orbit.phase, orbit.deviations, orbit.period, orbit.impacts)[2]
+    flow = shoot(changes, orbit.phase, orbit.deviations, orbit.m, orbit.impacts)[2]
     equations = np.delete(slopes_of(orbit, flow, changes), n + 1 if at_speed else n + 2, axis=0)
     unit = orbit.oscillator.unit_speed if at_speed else orbit.amplitude
     scale = np.concatenate([sizes, np.full(2, orbit.amplitude)])
@@ -114,7 +114,7 @@ def _solved(orbit: PeriodicOrbit, changes: Sensitivities, *, at_speed: bool) -> 
         inverse = np.full_like(matrix, np.inf)
     if not np.max(np.abs(inverse)) < STEEPEST:
         given = "approach speed" if at_speed else "amplitude"
-        words = f"the orbit of period {orbit.period} does not follow from its {given} here, as at a fold"
+        words = f"the orbit of period {orbit.m} does not follow from its {given} here, as at a fold"
         raise orbit.failure(NoDerivative, words)
     return np.asarray(scale[:, None] * (inverse @ known))
 

@@ -20,17 +20,9 @@ from contact.errors import NotPeriodic
 from contact.flight.modal_flow import steady_motion
 from contact.orbits.branches.branch import Branch, branch_of
 from contact.orbits.branches.curve import Curve
-from contact.orbits.families.equations import (
-    Equations,
-    Iterate,
-    Point,
-    drive_of,
-    driven_at,
-    shoot,
-    sizes_of,
-    slopes_of,
-)
-from contact.orbits.families.family import PeriodicOrbit
+from contact.orbits.families.equations import drive_of, driven_at, shoot, sizes_of, slopes_of
+from contact.orbits.families.newton import CurvePoint, Equations, Iterate
+from contact.orbits.families.touch_orbit import PeriodicOrbit
 from contact.oscillator import ImpactOscillator
 from contact.sensitivity.change import Change, Path, Sensitivities, change_along
 
@@ -62,11 +54,11 @@ class PathCurve(Curve):
         near = 1e-14 * (self.high - self.low)
         return next((end for end in (self.low, self.high) if abs(p - end) <= near), p)
 
-    def parameter(self, point: Point) -> float:
+    def parameter(self, point: CurvePoint) -> float:
         """p at a point."""
         return self.value(point.x)
 
-    def start(self, p: float) -> Point:
+    def start(self, p: float) -> CurvePoint:
         """The point next to the orbit `like`, at this p."""
         x = np.concatenate([self.like.deviations, drive_of(self.like), [p - self.low]]) / self.scale
         return self.at(x, self.like.impacts)
@@ -77,19 +69,19 @@ class PathCurve(Curve):
         phasor = math.hypot(z[-3], z[-2]) * np.exp(1j * w * time)
         return np.concatenate([start, [phasor.imag, phasor.real, z[-1]]]) / self.scale
 
-    def equations(self, x: Array, touches: int) -> Equations:
+    def equations(self, x: Array, impacts: int) -> Equations:
         """The equations near `x`; the derivatives of the oscillator's numbers are computed once, at `x`."""
-        return partial(self._iterate, touches, change_along(self.path, self.value(x), self.low, self.high))
+        return partial(self._iterate, impacts, change_along(self.path, self.value(x), self.low, self.high))
 
-    def _iterate(self, touches: int, change: Change, x: Array) -> Iterate:
+    def _iterate(self, impacts: int, change: Change, x: Array) -> Iterate:
         z, n = x * self.scale, x.size - 3
         here = self.path(self.value(x))
         driven, phase = driven_at(here, z[-3:-1])
         several = Sensitivities(oscillator=driven, changes=(change,))
-        orbit, miss, flow = shoot(several, phase, z[:n], self.like.period, touches)
+        orbit, miss, flow = shoot(several, phase, z[:n], self.like.m, impacts)
         weight = np.concatenate([self.scale[:n], [here.stop.gap, self.scale[-2]]])
-        q = steady_motion(driven.motion(), phase)[0]
-        height = float(here.tip(orbit.displacement + q)) - driven.motion().gap
+        q = steady_motion(driven.numbers(), phase)[0]
+        height = float(here.tip(orbit.displacement + q)) - driven.numbers().gap
         residual = np.concatenate([miss, [height, orbit.amplitude - here.driven.amplitude]]) / weight
         rows = slopes_of(orbit, flow, several) * self.scale
         p_slope = self.scale * np.eye(x.size)[-1]

@@ -1,8 +1,13 @@
-"""Families of periodic orbits, each in one description.
+"""Families of periodic orbits: the orbits p_m of one oscillator, over their approach speed.
 
-`family`              what all families offer, and an orbit given by its first touch
-`single_impact`       one impact every m drive periods under Newton's law, in closed form
-`kick`                one collision of any law as a kick of all modes, by linear algebra
-`equations`           the equations of an orbit, F(z, p) = 0, their derivatives, and Newton's method
-`continuable_family`  families of which each orbit leads to its neighbours
+`protocol`        what every orbit and every family offers, whatever describes the motion
+`touch_orbit`     an orbit of an impact oscillator, given by its first touch
+
+Three ways to the orbits of a family, from the fastest to the most general:
+`single_impact`   in closed form: one impact in m drive periods under Newton's law (`MaximalFamily`)
+`kick`            by linear algebra: one collision of any law, taken as a kick of all modes (`KickFamily`)
+`newton_family`   by Newton's method: any law and any number of touches (`contact.orbits.Shooting`)
+
+`equations`       the equations of an orbit for Newton's method, F(z, p) = 0, and their derivatives
+`newton`          the method, for a point of a curve of orbits
 """

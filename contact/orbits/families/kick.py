@@ -23,7 +23,7 @@ from contact.flight.modal_flow import free_flow
 from contact.flight.variation import variation
 from contact.orbits.families.single_impact import Kick, SingleImpactFamily, SingleImpactOrbit
 from contact.sensitivity.touch_flow import FEWER_TOUCHES, flow_error, flow_from_touch
-from contact.touch import TOUCHES
+from contact.touch import LAWS
 from contact.touch.passage import new_touches
 
 MOST_TOUCHES = 200  # bound of touches in one collision: a bare tip under a stiff spring makes some dozens
@@ -38,7 +38,7 @@ GRID = 33  # velocities of a search, on a logarithmic grid: eight a decade
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class KickFamily(SingleImpactFamily):
-    """The p_m orbits with one collision, m = `period`, of an `oscillator` with any contact law, from kicks.
+    """The p_m orbits with one collision, `m`, of an `oscillator` with any contact law, from kicks.
 
     Parameters
     ----------
@@ -59,23 +59,23 @@ class KickFamily(SingleImpactFamily):
         require_within("speed", speed, "m/s", above=0)
         if self.collision is not None:
             return self.collision(speed)
-        motion = self.oscillator.motion()
-        known = TOUCHES[motion.law].repeated_touch(motion, speed, self.period)
+        numbers = self.oscillator.numbers()
+        known = LAWS[numbers.law].repeated_touch(numbers, speed, self.m)
         if known is not None:
             jump, duration, leaves = known
             return Kick(speed=speed, jump=jump, duration=duration, leaves=leaves)
         amplitude, phase = self.oscillator.drive_at(self.oscillator.stop.gap, speed)
-        motion, window = self.oscillator.with_amplitude(amplitude).motion(), WINDOW * self.oscillator.period
-        vary = variation(motion, self.oscillator.tip_response())
-        (u, v), record = np.zeros((2, motion.size)), new_touches(MOST_TOUCHES + 1, motion.size)
+        numbers, window = self.oscillator.with_amplitude(amplitude).numbers(), WINDOW * self.oscillator.period
+        vary = variation(numbers, self.oscillator.tip_response())
+        (u, v), record = np.zeros((2, numbers.size)), new_touches(MOST_TOUCHES + 1, numbers.size)
         outcome = flow_from_touch(vary, phase, u, v, window, np.empty((0, 0)), record)
         if outcome != FEWER_TOUCHES:
             raise flow_error(outcome, phase, speed, "the collision does not end within half a drive period")
-        touches = int(record.marks[0]["logged"])
-        last, left = record.log[touches - 1], record.states[touches - 1, 1].T
-        jump = np.einsum("kij,kj->ki", free_flow(motion, -last["end"]), left)  # flown back to the touch
+        impacts = int(record.marks[0]["logged"])
+        last, left = record.log[impacts - 1], record.states[impacts - 1, 1].T
+        jump = np.einsum("kij,kj->ki", free_flow(numbers, -last["end"]), left)  # flown back to the touch
         leaves, duration = bool(last["rebound"] < 0.0), float(last["end"])
-        return Kick(speed=speed, jump=jump, touches=touches, duration=duration, leaves=leaves)
+        return Kick(speed=speed, jump=jump, impacts=impacts, duration=duration, leaves=leaves)
 
     def _search(self, speeds: tuple[float, float]) -> tuple[list[float], float | None]:
         """Rising logarithms of velocities in a range over 2 pi f gap, and the one of least excess inside."""

@@ -44,7 +44,7 @@ from contact.flight.modal_flow import free_flow
 from contact.flight.polynomial_root import positive_roots
 from contact.laws import NewtonRestitution
 from contact.orbits.families.equations import shoot
-from contact.orbits.families.family import CLOSING, TouchOrbit
+from contact.orbits.families.touch_orbit import CLOSING, TouchOrbit
 from contact.oscillator import ImpactOscillator, require_one_stop
 from contact.sensitivity.change import Sensitivities
 from contact.stop import Stop
@@ -64,7 +64,7 @@ class Kick:
         Approach speed v of the tip [m/s].
     jump : ndarray, shape (n_modes, 2)
         B: jumps of displacement and velocity of the modes, referred to the first touch.
-    touches, duration : int, float
+    impacts, duration : int, float
         Contacts in the collision, and time from first touch to last release [s].
     leaves : bool
         Whether the tip then has a velocity away from the wall, or is at rest on it.
@@ -72,7 +72,7 @@ class Kick:
 
     speed: float
     jump: Array
-    touches: int = 1
+    impacts: int = 1
     duration: float = 0.0
     leaves: bool = True
 
@@ -85,10 +85,10 @@ class SingleImpactOrbit(TouchOrbit):
 
     def release(self) -> tuple[float, Array, Array, bool, float]:
         """The end of the collision."""
-        motion, duration = self.oscillator.motion(), self.kick.duration
+        numbers, duration = self.oscillator.numbers(), self.kick.duration
         after = self.deviations.reshape(2, -1).T + self.kick.jump  # referred to the first touch
-        u, v = np.einsum("kij,kj->ik", free_flow(motion, duration), after)
-        return duration, u, v, self.kick.leaves, CLOSING * self.duration + HEIGHT * motion.gap / self.speed
+        u, v = np.einsum("kij,kj->ik", free_flow(numbers, duration), after)
+        return duration, u, v, self.kick.leaves, CLOSING * self.duration + HEIGHT * numbers.gap / self.speed
 
     def monodromy(self) -> Array:
         """The monodromy matrix of the oscillator's own collision, entered as on this orbit.
@@ -96,7 +96,7 @@ class SingleImpactOrbit(TouchOrbit):
         NotPeriodic is raised if that collision has fewer touches than the kick, or does not end.
         """
         known = Sensitivities(oscillator=self.oscillator)
-        return shoot(known, self.phase, self.deviations, self.period, self.kick.touches)[0].tangent
+        return shoot(known, self.phase, self.deviations, self.m, self.kick.impacts)[0].tangent
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -107,19 +107,19 @@ class SingleImpactFamily(ABC):
     ----------
     oscillator : ImpactOscillator
         Without constant load; its drive amplitude does not matter.
-    period : int
+    m : int
         m, one or more.
     """
 
     oscillator: ImpactOscillator
-    period: int
+    m: int
 
     def __post_init__(self) -> None:
         require_one_stop(self.oscillator, "an orbit")
         if self.oscillator.load is not None:
             raise InvalidValue("load is given; it must be None for orbits with one collision")
         self.oscillator.grazing_amplitude()  # the drive moves the tip
-        require_whole("period", self.period, "drive periods")
+        require_whole("m", self.m, "drive periods")
 
     @abstractmethod
     def kick(self, speed: float) -> Kick:
@@ -128,12 +128,12 @@ class SingleImpactFamily(ABC):
     @cached_property
     def flow(self) -> Array:
         """N, mode by mode, shape (n_modes, 2, 2)."""
-        return free_flow(self.oscillator.motion(), self.period * self.oscillator.period)
+        return free_flow(self.oscillator.numbers(), self.m * self.oscillator.period)
 
     @cached_property
     def _closing(self) -> tuple[Array, NDArray[np.bool_]]:
         """(N - G I)/D of each mode, and whether the mode returns to itself after m/f (D = 0)."""
-        shrink = np.exp(-self.oscillator.motion().decay * self.period * self.oscillator.period)
+        shrink = np.exp(-self.oscillator.numbers().decay * self.m * self.oscillator.period)
         distance = np.abs(1.0 - self.flow[:, 0, 0] - self.flow[:, 1, 1] + shrink)
         trapped = distance <= SINGULAR
         sizes = np.where(trapped, 1.0, distance)[:, None, None]
@@ -149,7 +149,7 @@ class SingleImpactFamily(ABC):
         if back.size:
             raise InvalidValue(
                 f"omega[{back[0]}] is {self.oscillator.model.omega[back[0]]} rad/s, a mode that is back "
-                f"after {self.period} drive periods; it must have damping or another frequency"
+                f"after {self.m} drive periods; it must have damping or another frequency"
             )
         closed: Array = np.einsum("kij,kj->ki", matrices, jump)
         return closed
@@ -157,19 +157,19 @@ class SingleImpactFamily(ABC):
     def excess(self, speed: float) -> float:
         """F/F_g - 1 of the orbit that meets the wall at `speed`, above zero [m/s]; raises as `orbit` does."""
         kick, gap = self.kick(require_within("speed", speed, "m/s", above=0)), self.oscillator.stop.gap
-        p, r = self.oscillator.motion().tip(self.closed(kick.jump))
+        p, r = self.oscillator.numbers().tip(self.closed(kick.jump))
         return excess_of(p / gap, (kick.speed - r) / self.oscillator.unit_speed)
 
     def orbit_of(self, kick: Kick) -> SingleImpactOrbit:
         """The orbit on which `kick` happens once in m drive periods."""
         require_kind("kick", kick, Kick, "a Kick")
         before, gap = self.closed(kick.jump), self.oscillator.stop.gap
-        p, r = self.oscillator.motion().tip(before)
+        p, r = self.oscillator.numbers().tip(before)
         rate = kick.speed - r
         amplitude, phase = self.oscillator.drive_at(gap - p, rate)
         return SingleImpactOrbit(
             oscillator=self.oscillator.with_amplitude(amplitude),
-            period=self.period,
+            m=self.m,
             excess=excess_of(p / gap, rate / self.oscillator.unit_speed),
             speed=kick.speed,
             phase=phase,
@@ -208,26 +208,26 @@ class MaximalFamily(SingleImpactFamily):
 
     @classmethod
     def from_oscillator(
-        cls, oscillator: ImpactOscillator, *, period: int, restitution: float | None = None
+        cls, oscillator: ImpactOscillator, *, m: int, restitution: float | None = None
     ) -> Self:
         """The orbits of an oscillator; `restitution` [1] replaces its law."""
         if restitution is not None:
             require_one_stop(oscillator, "an orbit")
             law = NewtonRestitution(local_restitution=restitution)
             oscillator = replace(oscillator, stop=Stop(gap=oscillator.stop.gap, law=law))
-        return cls(oscillator=oscillator, period=period)
+        return cls(oscillator=oscillator, m=m)
 
     def kick(self, speed: float) -> Kick:
         """The collision under Newton's law: a jump of the velocities."""
-        motion, velocity = self.oscillator.motion(), np.zeros(self.oscillator.n_modes)
-        newton_impact(motion, velocity, speed, motion.number0)
+        numbers, velocity = self.oscillator.numbers(), np.zeros(self.oscillator.n_modes)
+        newton_impact(numbers, velocity, speed, numbers.number0)
         jump = np.column_stack([np.zeros(velocity.size), velocity])
-        return Kick(speed=speed, jump=jump, leaves=motion.number0 > 0.0)
+        return Kick(speed=speed, jump=jump, leaves=numbers.number0 > 0.0)
 
     @cached_property
     def coefficients(self) -> tuple[float, float]:
         """(s, b): p and (v - r)/w of Eq. (a) per unit approach speed [s]."""
-        s, r = self.oscillator.motion().tip(self.closed(self.kick(1.0).jump))
+        s, r = self.oscillator.numbers().tip(self.closed(self.kick(1.0).jump))
         return float(s), float((1.0 - r) / self.oscillator.driven.angular_frequency)
 
     def orbits(self, excess: float) -> tuple[SingleImpactOrbit, ...]:

@@ -1,7 +1,7 @@
 r"""One column of a chart: the amplitude raised and lowered again at one drive frequency, in a compiled loop.
 
     column = AmplitudeScan(oscillator=oscillator, most_cycles=1024)(frequency=22.2, excesses=excesses)
-    column.period[0], column.period[1]        # upward and downward scan, over the excesses in rising order
+    column.m[0], column.m[1]        # upward and downward scan, over the excesses in rising order
 
 At each amplitude the motion starts from the last physical state (q, q') at the amplitude before.  It is
 followed in blocks of `BLOCK` drive periods until it has settled
@@ -28,8 +28,8 @@ from numpy.typing import ArrayLike, NDArray
 from beam.parameters import InvalidValue, require_array, require_whole
 from contact.engine.event_loop import DONE
 from contact.engine.start import failure
-from contact.flight.modal_flow import tip_rounding, tip_state
-from contact.flight.motion import Motion
+from contact.flight.numbers import Numbers
+from contact.flight.tip import tip_rounding, tip_state
 from contact.machine.compiled import kernel
 from contact.maps.strobed_motion import at_amplitude, strobed_motion, strobed_system
 from contact.maps.stroboscope import StroboscopicMap
@@ -39,7 +39,7 @@ from contact.oscillator import ImpactOscillator, require_one_stop
 from contact.touch.passage import STATE
 from contact.trajectory import OUTSIDE
 
-LARGEST_PERIOD = 64  # longest period that is recognised
+LARGEST_M = 64  # longest period that is recognised
 SHORTEST = 16  # strobes that have to repeat at least, twice the letter's common periods
 
 ROUGH = 1e4
@@ -59,26 +59,26 @@ def settled_column(system, amplitudes, reached, most_cycles, tolerance, found, u
     reached, the modal one of shape (2 n_modes,) and its `STATE`; `found`, shape (n, 3), by period, impacts
     and drive periods spent; and `u`, `v` and `runs` (`STATE`) by deviations and run at a failure.
     """
-    n, run, capacity, (state, touching) = system.motion.size, runs[0], 2 * LARGEST_PERIOD, reached
+    n, run, capacity, (state, touching) = system.numbers.size, runs[0], 2 * LARGEST_M, reached
     points, impacts = np.empty((capacity, 2 * n)), np.zeros(capacity, dtype=np.int64)
     as_is = np.empty(0)
     for a in range(amplitudes.size):
         local = at_amplitude(system, amplitudes[a])
-        here, mean = local.motion, local.mean.copy()
+        here, mean = local.numbers, local.mean.copy()
         local.mean[:] = 0.0  # the points are those of the deviations
         u[:], v[:] = state[:n] - mean[:n], state[n:] - mean[n:]
         runs[0] = touching[0]
-        run.contact_order, run.period, run.steps, run.clock = 0, 0, 0, 0.0
+        run.contact_order, run.stretch, run.steps, run.clock = 0, 0, 0, 0.0
         run.memory0, run.memory1 = -1.0, -1.0
-        rows, cycles, period, status = 0, 0, 0, DONE
+        rows, cycles, m, status = 0, 0, 0, DONE
         if run.regime == OUTSIDE and tip_state(here, 0.0, u, v)[0] > tip_rounding(here, u, v):
             status = BEHIND
-        while status == DONE and period == 0:
+        while status == DONE and m == 0:
             if run.regime == OUTSIDE and free_for_good(here, u, v):
                 u[:], v[:] = 0.0, 0.0
-                period, rows = 1, 0
+                m, rows = 1, 0
             elif cycles >= most_cycles:
-                period = repetition(points, impacts, rows, np.int64(LARGEST_PERIOD), ROUGH * tolerance)
+                m = repetition(points, impacts, rows, np.int64(LARGEST_M), ROUGH * tolerance)
                 break
             else:
                 if rows == capacity:
@@ -87,15 +87,15 @@ def settled_column(system, amplitudes, reached, most_cycles, tolerance, found, u
                 new = slice(rows, rows + BLOCK)
                 status = strobed_motion(local.table, local, as_is, u, v, runs, points[new], impacts[new])
                 rows, cycles, stretch = rows + BLOCK, cycles + BLOCK, np.int64(SHORTEST)
-                while status == DONE and period == 0 and 2 * stretch <= rows:
-                    period = repetition(points, impacts, rows, stretch, tolerance)
+                while status == DONE and m == 0 and 2 * stretch <= rows:
+                    m = repetition(points, impacts, rows, stretch, tolerance)
                     stretch *= 2
         if status != DONE:
             return a, status
         state[:n], state[n:] = u + mean[:n], v + mean[n:]
         touching[0] = runs[0]
-        hits = impacts[max(0, rows - period) if period > 0 else 0 : rows].sum()
-        found[a, 0], found[a, 1], found[a, 2] = period, hits, cycles
+        hits = impacts[max(0, rows - m) if m > 0 else 0 : rows].sum()
+        found[a, 0], found[a, 1], found[a, 2] = m, hits, cycles
     return amplitudes.size, DONE
 
 
@@ -105,7 +105,7 @@ class ScannedColumn:
 
     Parameters
     ----------
-    period : ndarray of int
+    m : ndarray of int
         Of the settled orbit in drive periods; 0 if none was found, -1 where the computation failed.
     impacts, cycles : ndarray of int
         Impacts in one such period; drive periods spent; -1 where the computation failed.
@@ -113,7 +113,7 @@ class ScannedColumn:
         Why the computation failed; empty if it did not.
     """
 
-    period: NDArray[np.int64]
+    m: NDArray[np.int64]
     impacts: NDArray[np.int64]
     cycles: NDArray[np.int64]
     reason: NDArray[np.str_]
@@ -132,8 +132,8 @@ class AmplitudeScan:
     def __post_init__(self) -> None:
         require_one_stop(self.oscillator, "a scan")
         _ = self.oscillator.driven
-        why = f", to see a period of up to {LARGEST_PERIOD}"
-        require_whole("most_cycles", self.most_cycles, "drive periods", low=2 * LARGEST_PERIOD, why=why)
+        why = f", to see a period of up to {LARGEST_M}"
+        require_whole("most_cycles", self.most_cycles, "drive periods", low=2 * LARGEST_M, why=why)
 
     def __call__(self, frequency: float, excesses: ArrayLike) -> ScannedColumn:
         """The column at drive `frequency` [Hz] over rising `excesses` F/F_g - 1 [1]."""
@@ -155,18 +155,18 @@ class AmplitudeScan:
             at += done
             if status != DONE:
                 # the next amplitude goes on from the last state that was reached
-                motion = oscillator.with_excess(float(path[at])).motion()
-                reasons[at], at = _reason(status, motion, runs, u, v), at + 1
-        period, impacts, cycles, reason = (
+                numbers = oscillator.with_excess(float(path[at])).numbers()
+                reasons[at], at = _reason(status, numbers, runs, u, v), at + 1
+        m, impacts, cycles, reason = (
             np.array([every[: rising.size], every[: rising.size - 1 : -1]])
             for every in (*found.T, np.array(reasons))
         )
-        return ScannedColumn(period=period, impacts=impacts, cycles=cycles, reason=reason)
+        return ScannedColumn(m=m, impacts=impacts, cycles=cycles, reason=reason)
 
 
-def _reason(status: int, motion: Motion, runs: np.ndarray, u: np.ndarray, v: np.ndarray) -> str:
+def _reason(status: int, numbers: Numbers, runs: np.ndarray, u: np.ndarray, v: np.ndarray) -> str:
     """One sentence for an amplitude that failed."""
     if status == BEHIND:
-        return f"the amplitude before left the tip {tip_state(motion, 0.0, u, v)[0]:.3g} m behind the stop"
-    error = failure(status, motion, runs, u, v)
+        return f"the amplitude before left the tip {tip_state(numbers, 0.0, u, v)[0]:.3g} m behind the stop"
+    error = failure(status, numbers, runs, u, v)
     return f"{type(error).__name__}: {error}"

@@ -24,14 +24,14 @@ from contact.maps.nordmark import NordmarkMap
 from contact.maps.stroboscope import StroboscopicMap
 from contact.orbits.observation.repetition import require_orbit
 from contact.sensitivity.change import Change
-from contact.sensitivity.motion import motion_derivatives
+from contact.sensitivity.derivatives import motion_derivatives
 from contact.trajectory import State
 
 Strobed = StroboscopicMap | NordmarkMap
 
 
-def strobe_derivatives(strobed: Strobed, state: State | Array, period: int) -> list[tuple[Array, Array]]:
-    """M_n and b_n along m = `period` drive periods from `state`, a strobe off the stop.
+def strobe_derivatives(strobed: Strobed, state: State | Array, m: int) -> list[tuple[Array, Array]]:
+    """M_n and b_n along `m` drive periods from `state`, a strobe off the stop.
 
     The `strobed` oscillator or map has the excess of the orbit.  There is a pair for each period, of shapes
     (n_coordinates, n_coordinates) and (n_coordinates,), in the coordinates of the points; an amplitude counts
@@ -39,29 +39,29 @@ def strobe_derivatives(strobed: Strobed, state: State | Array, period: int) -> l
     motion grazes the stop or rests on it.
     """
     require_kind("strobed", strobed, (StroboscopicMap, NordmarkMap), "a strobed oscillator or map")
-    require_whole("period", period, "drive periods")
+    require_whole("m", m, "drive periods")
     if isinstance(strobed, NordmarkMap):
-        jacobians, _end = strobed.jacobians(state, period)  # type: ignore[arg-type]
+        jacobians, _end = strobed.jacobians(state, m)  # type: ignore[arg-type]
         return [(jacobian, np.array([strobed.rho_per_factor, 0.0])) for jacobian, _span in jacobians]
     oscillator = strobed.oscillator
     here, found = require_kind("state", state, State, "a State"), list[tuple[Array, Array]]()
     strobed.orbit(here, 0)  # which refuses a state that is not at a strobe
     change, ones = Change(amplitude=oscillator.driven.amplitude), np.ones(oscillator.n_modes)
     weight = strobed.coordinates(State(displacement=ones, velocity=ones))
-    for _ in range(period):
+    for _ in range(m):
         step = motion_derivatives(oscillator, replace(here, time=0.0), [change], periods=1)
         tangent = weight[:, None] * step.strobes[0]
         found.append((tangent[:, :-1] / weight, tangent[:, -1]))
-        here = step.run.end
+        here = step.trajectory.end
     return found
 
 
-def cloud(
-    strobed: Strobed, state: State | Array, period: int, *, deviation: float, memory: float = 0.0
+def strobe_covariance(
+    strobed: Strobed, state: State | Array, m: int, *, deviation: float, memory: float = 0.0
 ) -> Array:
-    """Covariance of the points ``strobed.orbit(state, period)`` of a stable orbit, in their unit squared.
+    """Covariance of the points ``strobed.orbit(state, m)`` of a stable orbit, in their unit squared.
 
-    Its shape is (period, n_coordinates, n_coordinates).  `strobed`, `state` and `period` are given as in
+    Its shape is (m, n_coordinates, n_coordinates).  `strobed`, `state` and `m` are given as in
     `strobe_derivatives`.  `deviation` is sigma, relative to the amplitude [1], and `memory` is r, from 0 to
     below 1 [1].  NotPeriodic is raised if the state lies on no stable orbit of this period; other errors as
     in `strobe_derivatives`.
@@ -69,8 +69,8 @@ def cloud(
     require_within("deviation", deviation, "[1]", low=0)
     require_within("memory", memory, "[1]", low=0)
     require(memory < 1.0, f"memory is {memory} [1]; it must be below 1")
-    made = strobe_derivatives(strobed, state, period)
-    require_orbit(strobed, state, period)
+    made = strobe_derivatives(strobed, state, m)
+    require_orbit(strobed, state, m)
     steps = [np.block([[m, b[:, None]], [np.zeros((1, b.size)), np.array([[memory]])]]) for m, b in made]
     size = len(steps[0])
     source = np.zeros((size, size))

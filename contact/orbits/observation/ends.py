@@ -26,8 +26,9 @@ from contact.maps.nordmark_orbits import MapFamily
 from contact.maps.protocol import require_map
 from contact.maps.stroboscope import StrobedMap, StroboscopicMap
 from contact.orbits.branches.continuation import first_event, fold_of_the_kicks
-from contact.orbits.families.family import Family, PeriodicOrbit
+from contact.orbits.families.protocol import Family
 from contact.orbits.families.single_impact import MaximalFamily
+from contact.orbits.families.touch_orbit import PeriodicOrbit
 from contact.orbits.observation.settling import orbit_near, settle
 from contact.orbits.shooting import Shooting
 
@@ -39,7 +40,7 @@ BRACKET = "bracket"  # kind of an end of which only the bracket is known
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class OrbitEnd(Generic[S]):
-    """The end of an orbit with this `period` and these `impacts` in a downward scan.
+    """The end of an orbit with this `m` and these `impacts` in a downward scan.
 
     Parameters
     ----------
@@ -55,7 +56,7 @@ class OrbitEnd(Generic[S]):
         velocity and touches identify it among several orbits of this period.
     """
 
-    period: int
+    m: int
     impacts: int
     excess: float
     kind: str
@@ -97,7 +98,7 @@ def orbit_end(
     require_within("first_step", first_step, "[1]", above=0)
     require_within("lowest", lowest, "[1]", above=-1)
     start = settle(strobed.at(excess), state, most_cycles=most_cycles)
-    if start.period == 0 or start.impacts == 0:
+    if start.m == 0 or start.impacts == 0:
         return None
 
     def kept(trial: float) -> S | None:
@@ -106,7 +107,7 @@ def orbit_end(
             settled = settle(strobed.at(trial), state, most_cycles=most_cycles)
         except ContactError:
             return None
-        same = (settled.period, settled.impacts) == (start.period, start.impacts)
+        same = (settled.m, settled.impacts) == (start.m, start.impacts)
         return settled.end if same else None
 
     held, state, step, lost = excess, start.end, first_step, math.inf
@@ -120,7 +121,7 @@ def orbit_end(
         now = kept(trial)
         if now is None and step <= final:
             bracket = OrbitEnd(
-                period=start.period,
+                m=start.m,
                 impacts=start.impacts,
                 excess=0.5 * (held + trial),
                 kind=BRACKET,
@@ -143,15 +144,15 @@ def orbit_end(
 
 def _exact_end(strobed: Any, bracket: OrbitEnd[Any]) -> tuple[OrbitEnd[Any] | None, Any]:
     """The end in the `bracket`; or None and the state at `lost`, if the orbit still exists there."""
-    period, impacts, lost = bracket.period, bracket.impacts, bracket.lost
+    m, impacts, lost = bracket.m, bracket.impacts, bracket.lost
     if isinstance(strobed, NordmarkMap) and impacts == 1:
-        return _map_end(MapFamily(strobed, period), bracket)
+        return _map_end(MapFamily(strobed, m), bracket)
     if not isinstance(strobed, StroboscopicMap):
         return bracket, None
-    orbit = orbit_near(strobed.at(bracket.held), bracket.state, period, impacts)
+    orbit = orbit_near(strobed.at(bracket.held), bracket.state, m, impacts)
     if orbit is None:
         return bracket, None
-    family = Shooting(oscillator=orbit.oscillator, period=period, impacts=impacts)
+    family = Shooting(oscillator=orbit.oscillator, m=m, impacts=impacts)
     try:
         event = first_event(family, orbit, lost)
         if event is not None and event.kind == "undecided":
@@ -178,7 +179,7 @@ def _map_end(family: MapFamily, bracket: OrbitEnd[S]) -> tuple[OrbitEnd[S] | Non
     return replace(bracket, kind="period doubling" if doubles else "grazing", excess=end), None
 
 
-def fold_excess(strobed: StrobedMap[Any], period: int) -> float | None:
+def fold_excess(strobed: StrobedMap[Any], m: int) -> float | None:
     """F_m/F_g - 1 at the fold of the p_m orbit with one collision; None without a fold, or for m < 2.
 
     The Nordmark map and Newton's law have it in closed form.  Under any other law it is found by shooting,
@@ -188,27 +189,27 @@ def fold_excess(strobed: StrobedMap[Any], period: int) -> float | None:
     ----------
     strobed : StrobedMap
         A NordmarkMap or a StroboscopicMap; its own amplitude does not matter.
-    period : int
+    m : int
         m, in drive periods; 0 for a motion that did not settle.
 
     BranchEnded is raised if the orbits around the expected place of the fold are not found.
     """
-    if require_whole("period", period, "drive periods", low=0) < 2:
+    if require_whole("m", m, "drive periods", low=0) < 2:
         return None
     family: Family
     if isinstance(strobed, NordmarkMap):
-        family = MapFamily(strobed, period)
+        family = MapFamily(strobed, m)
     else:
         words = "a StroboscopicMap or a NordmarkMap"
         oscillator = require_kind("strobed", strobed, StroboscopicMap, words).oscillator
         law = oscillator.stop.law
         if law.code == NEWTON and law.table.size == 0:  # a constant restitution
-            family = MaximalFamily.from_oscillator(oscillator, period=period)
+            family = MaximalFamily.from_oscillator(oscillator, m=m)
         else:
-            one = Shooting(oscillator=oscillator, period=period)
+            one = Shooting(oscillator=oscillator, m=m)
             kick = fold_of_the_kicks(one)
             if kick is None:
                 return None
-            family = replace(one, impacts=kick.kick.touches)
+            family = replace(one, impacts=kick.kick.impacts)
     at_fold = family.fold()
     return None if at_fold is None else at_fold.excess

@@ -97,18 +97,18 @@ def map_exponents(
     return Exponents(values=np.sort(mean)[::-1], error=error), state
 
 
-def orbit_exponents(strobed: DifferentiableMap[S], state: S, period: int) -> Exponents:
-    """Exponents log|mu_i|/m of the periodic orbit of `period` m on which `state` lies, per step."""
+def orbit_exponents(strobed: DifferentiableMap[S], state: S, m: int) -> Exponents:
+    """Exponents log|mu_i|/m of the periodic orbit of `m` drive periods on which `state` lies, per step."""
     require_map(strobed, DifferentiableMap)
-    period = require_whole("period", period, "drive periods")
-    require_orbit(strobed, state, period)
+    m = require_whole("m", m, "drive periods")
+    require_orbit(strobed, state, m)
     matrix = np.eye(strobed.coordinates(state).size)
     done = 0
-    while done % period or done == 0:  # a strobe in contact is never the last: m periods later it is again
-        if done > MOST_STRETCHES * period:
+    while done % m or done == 0:  # a strobe in contact is never the last: m periods later it is again
+        if done > MOST_STRETCHES * m:
             words = "every strobe of the orbit is in contact"
             raise NotPeriodic(time=0.0, gap=0.0, velocity=0.0, detail=words)
-        found, state = strobed.jacobians(state, period - done % period)
+        found, state = strobed.jacobians(state, m - done % m)
         for step, span in found:
             matrix, done = _finite(step @ matrix), done + span
     sizes = np.maximum(np.abs(np.linalg.eigvals(matrix)), SMALLEST)

@@ -13,8 +13,8 @@ import numpy as np
 
 from beam.parameters import require, require_array, require_whole, require_within
 from contact.errors import NotPeriodic
-from contact.flight.modal_flow import tip_bound
-from contact.flight.motion import OMEGA
+from contact.flight.numbers import OMEGA
+from contact.flight.tip import tip_bound
 from contact.machine.compiled import kernel
 from contact.maps.protocol import DifferentiableMap
 
@@ -27,25 +27,25 @@ def repetition(points, impacts, rows, stretch, tolerance):
 
     `rows` of `points` and `impacts` are in use, at least 2 `stretch`.
     """
-    for period in range(1, stretch + 1):
+    for m in range(1, stretch + 1):
         same, i = True, rows
         while same and i > rows - stretch:
             i -= 1
-            same, k = impacts[i] == impacts[i - period], 0
+            same, k = impacts[i] == impacts[i - m], 0
             while same and k < points.shape[1]:
-                same, k = abs(points[i, k] - points[i - period, k]) <= tolerance, k + 1
+                same, k = abs(points[i, k] - points[i - m, k]) <= tolerance, k + 1
         if same:
-            return period
+            return m
     return 0
 
 
-def period_of(points: np.ndarray, impacts: np.ndarray, *, largest_period: int, tolerance: float) -> int:
-    """The smallest p <= `largest_period` with which the last `largest_period` points repeat, or 0.
+def repeats_after(points: np.ndarray, impacts: np.ndarray, *, largest_m: int, tolerance: float) -> int:
+    """The smallest p <= `largest_m` with which the last `largest_m` points repeat, or 0.
 
     `points`, shape (n_strobes, n_coordinates), and `impacts`, shape (n_strobes,), must hold at least
-    2 * `largest_period` strobes.  `tolerance` is in the unit of the points.
+    2 * `largest_m` strobes.  `tolerance` is in the unit of the points.
     """
-    stretch = require_whole("largest_period", largest_period, "strobes", low=0)
+    stretch = require_whole("largest_m", largest_m, "strobes", low=0)
     given = require_array("points", points, "any unit", dimensions=2, words="rows of coordinates")
     rows = len(given)
     require(rows >= 2 * stretch, f"points has {rows} strobes; it must have {2 * stretch} or more")
@@ -55,20 +55,20 @@ def period_of(points: np.ndarray, impacts: np.ndarray, *, largest_period: int, t
     return int(repetition(given.copy(), counts, rows, stretch, fine))
 
 
-def require_orbit(strobed: DifferentiableMap, state, period: int) -> None:
-    """NotPeriodic unless the motion from `state` is back after `period` steps, to `RETURNS` of the scale."""
-    away = np.abs(strobed.orbit(state, period).points[-1] - strobed.coordinates(state)).max()
+def require_orbit(strobed: DifferentiableMap, state, m: int) -> None:
+    """NotPeriodic unless the motion from `state` is back after `m` steps, to `RETURNS` of the scale."""
+    away = np.abs(strobed.orbit(state, m).points[-1] - strobed.coordinates(state)).max()
     if not away <= RETURNS * strobed.scale:
-        words = f"after {period} periods it is {away:.3g} from the state, of a scale of {strobed.scale:g}"
+        words = f"after {m} periods it is {away:.3g} from the state, of a scale of {strobed.scale:g}"
         raise NotPeriodic(time=getattr(state, "time", 0.0), gap=0.0, velocity=0.0, detail=words)
 
 
 @kernel
-def free_for_good(motion, u, v):
+def free_for_good(numbers, u, v):
     """Whether the free motion of the deviations (u, v) can never bring the tip to the stop."""
-    left = motion.amplitude
-    for k in range(motion.size):
-        if not motion.modes[OMEGA, k] > 0.0:
+    left = numbers.amplitude
+    for k in range(numbers.size):
+        if not numbers.modes[OMEGA, k] > 0.0:
             return False
-        left += tip_bound(motion, k, u[k], v[k] / motion.modes[OMEGA, k])
-    return left < -motion.level * (1.0 - 1e-12)
+        left += tip_bound(numbers, k, u[k], v[k] / numbers.modes[OMEGA, k])
+    return left < -numbers.level * (1.0 - 1e-12)

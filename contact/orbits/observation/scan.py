@@ -14,7 +14,7 @@ import numpy as np
 from beam.parameters import require, require_array, require_kind, require_whole
 from contact.errors import ContactError
 from contact.maps.protocol import StrobedMap, require_map
-from contact.orbits.observation.repetition import period_of
+from contact.orbits.observation.repetition import repeats_after
 from contact.orbits.observation.settling import TOLERANCE, settle
 
 S = TypeVar("S")
@@ -29,7 +29,7 @@ class OrbitDiagram(Generic[S]):
     excess : ndarray, shape (n_amplitudes,)
     points : ndarray, shape (n_amplitudes, record_cycles)
         The observed quantity at the strobes; NaN where the computation failed.
-    period, impacts, cycles : ndarray of int, shape (n_amplitudes,)
+    m, impacts, cycles : ndarray of int, shape (n_amplitudes,)
         Period of the settled orbit (0: none), impacts in one such period, drive periods spent settling.
         Without a period, the impacts and the points are a sample of a motion that goes on changing.
     failures : tuple of str
@@ -40,7 +40,7 @@ class OrbitDiagram(Generic[S]):
 
     excess: np.ndarray
     points: np.ndarray
-    period: np.ndarray
+    m: np.ndarray
     impacts: np.ndarray
     cycles: np.ndarray
     failures: tuple[str, ...]
@@ -49,7 +49,7 @@ class OrbitDiagram(Generic[S]):
     @property
     def kind(self) -> list[str]:
         """The state of each amplitude: "periodic", "not settled" (chaos or a long transient), "failed"."""
-        words = np.where(self.period > 0, "periodic", "not settled")
+        words = np.where(self.m > 0, "periodic", "not settled")
         found: list[str] = np.where(np.isnan(self.points[:, 0]), "failed", words).tolist()
         return found
 
@@ -62,7 +62,7 @@ def orbit_diagram(
     observe: Callable[[np.ndarray], np.ndarray],
     settle_cycles: int,
     record_cycles: int = 40,
-    largest_period: int = 64,
+    largest_m: int = 64,
     early: bool = True,
 ) -> OrbitDiagram[S]:
     """Scan the amplitudes `excesses` in the given order, starting from `state`.
@@ -75,7 +75,7 @@ def orbit_diagram(
         F/F_g - 1 at each step.
     observe : callable
         Strobed points, shape (n, n_coordinates), to the quantity recorded, shape (n,).
-    settle_cycles, record_cycles, largest_period : int
+    settle_cycles, record_cycles, largest_m : int
         Bound of the transient at each amplitude, strobe points recorded, and longest period looked for.
     early : bool
         End a transient as soon as the orbit is known (`settle`); otherwise every amplitude gets all
@@ -86,29 +86,26 @@ def orbit_diagram(
     require(values.size > 0, "excesses is empty; it must hold one number or more [1]")
     require_whole("settle_cycles", settle_cycles, "drive periods", low=0)
     require_whole("record_cycles", record_cycles, "drive periods")
-    require_whole("largest_period", largest_period, "drive periods")
+    require_whole("largest_m", largest_m, "drive periods")
     require_kind("observe", observe, Callable, "a function of strobed points")  # type: ignore[arg-type]
     points = np.full((values.size, record_cycles), np.nan)
-    period, impacts, cycles = (np.zeros(values.size, dtype=np.int64) for _ in range(3))
+    m, impacts, cycles = (np.zeros(values.size, dtype=np.int64) for _ in range(3))
     failures: list[str] = []
     for i, excess in enumerate(values):
         here = strobed.at(float(excess))
         try:
             if early:
-                settled = settle(here, state, most_cycles=settle_cycles, largest_period=largest_period)
+                settled = settle(here, state, most_cycles=settle_cycles, largest_m=largest_m)
                 state, cycles[i] = settled.end, settled.cycles
-                period[i], impacts[i] = settled.period, settled.impacts
+                m[i], impacts[i] = settled.m, settled.impacts
                 recorded = here.orbit(state, record_cycles)
             else:
                 state, cycles[i] = here.orbit(state, settle_cycles).end, settle_cycles
-                recorded = here.orbit(state, max(record_cycles, 2 * largest_period))
-                period[i] = period_of(
-                    recorded.points,
-                    recorded.impacts,
-                    largest_period=largest_period,
-                    tolerance=TOLERANCE * here.scale,
+                recorded = here.orbit(state, max(record_cycles, 2 * largest_m))
+                m[i] = repeats_after(
+                    recorded.points, recorded.impacts, largest_m=largest_m, tolerance=TOLERANCE * here.scale
                 )
-                impacts[i] = recorded.impacts[-period[i] :].sum()
+                impacts[i] = recorded.impacts[-m[i] :].sum()
             state = recorded.end
             shape, seen = (len(recorded.points),), observe(recorded.points)
             points[i] = require_array("observe(points)", seen, "its unit", shape=shape)[-record_cycles:]
@@ -116,11 +113,5 @@ def orbit_diagram(
             # the next amplitude goes on from the last state that was reached
             failures.append(f"excess {excess:.6g}: {error}")
     return OrbitDiagram(
-        excess=values,
-        points=points,
-        period=period,
-        impacts=impacts,
-        cycles=cycles,
-        failures=tuple(failures),
-        end=state,
+        excess=values, points=points, m=m, impacts=impacts, cycles=cycles, failures=tuple(failures), end=state
     )

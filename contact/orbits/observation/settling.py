@@ -28,8 +28,8 @@ from contact.errors import ContactError
 from contact.impacts import deviations
 from contact.maps.protocol import require_map
 from contact.maps.stroboscope import StrobedMap, StrobedOrbit, StroboscopicMap
-from contact.orbits.families.family import PeriodicOrbit
-from contact.orbits.observation.repetition import free_for_good, period_of
+from contact.orbits.families.touch_orbit import PeriodicOrbit
+from contact.orbits.observation.repetition import free_for_good, repeats_after
 from contact.orbits.shooting import Shooting
 from contact.trajectory import State
 
@@ -63,7 +63,7 @@ class Settled(Generic[S]):
 
     Parameters
     ----------
-    period, impacts, cycles : int
+    m, impacts, cycles : int
         Smallest period in strobes, 0 if none was found; impacts in one such period (or in the last block, if
         there is none); drive periods spent.
     end : State
@@ -72,7 +72,7 @@ class Settled(Generic[S]):
         The last strobed points.
     """
 
-    period: int
+    m: int
     impacts: int
     end: S
     cycles: int
@@ -84,7 +84,7 @@ def settle(
     state: S,
     *,
     most_cycles: int,
-    largest_period: int = 64,
+    largest_m: int = 64,
     tolerance: float = TOLERANCE,
     prove: bool = True,
 ) -> Settled[S]:
@@ -94,8 +94,8 @@ def settle(
     ----------
     strobed : StrobedMap
         The beam, Eq. (1) or the Nordmark map at one drive amplitude.
-    most_cycles, largest_period : int
-        The bound on the run; a block of 2 * `largest_period` is run in any case.
+    most_cycles, largest_m : int
+        The bound on the run; a block of 2 * `largest_m` is run in any case.
     tolerance : float
         Relative to the scale of the strobed map.
     prove : bool
@@ -103,29 +103,29 @@ def settle(
     """
     require_map(strobed)
     require_whole("most_cycles", most_cycles, "drive periods", low=0)
-    largest_period = require_whole("largest_period", largest_period, "drive periods")
+    largest_m = require_whole("largest_m", largest_m, "drive periods")
     fine = require_within("tolerance", tolerance, "[1]", low=0) * strobed.scale
-    block, cycles = 2 * largest_period, 0
+    block, cycles = 2 * largest_m, 0
     proof: Any = None
     if prove and isinstance(strobed, StroboscopicMap):
-        proof = _Proof(strobed, largest_period, fine)
+        proof = _Proof(strobed, largest_m, fine)
     while True:
-        run = strobed.orbit(state, block)
-        state, cycles = run.end, cycles + block
-        period = period_of(run.points, run.impacts, largest_period=largest_period, tolerance=fine)
+        strobes = strobed.orbit(state, block)
+        state, cycles = strobes.end, cycles + block
+        m = repeats_after(strobes.points, strobes.impacts, largest_m=largest_m, tolerance=fine)
         over = cycles >= most_cycles
-        if not over and period != period_of(
-            run.points, run.impacts, largest_period=period, tolerance=ALIKE * fine
+        if not over and m != repeats_after(
+            strobes.points, strobes.impacts, largest_m=m, tolerance=ALIKE * fine
         ):
-            period = 0
-        if proof is not None and not over and period == 0:
-            period, run = proof.after(run)
-        if over or period:
-            hits = int(run.impacts[-period:].sum())
-            return Settled(period=period, impacts=hits, end=run.end, cycles=cycles, points=run.points)
+            m = 0
+        if proof is not None and not over and m == 0:
+            m, strobes = proof.after(strobes)
+        if over or m:
+            hits = int(strobes.impacts[-m:].sum())
+            return Settled(m=m, impacts=hits, end=strobes.end, cycles=cycles, points=strobes.points)
 
 
-def born(
+def onset_orbit(
     strobed: StrobedMap[S], excess: float = 1e-3, *, below: float = BELOW, most_cycles: int = 4000
 ) -> Settled[S]:
     """The orbit on which the motion settles when the drive is raised to `excess` [1] in one step.
@@ -139,17 +139,17 @@ def born(
     return settle(raised, strobed.at(below).steady(), most_cycles=most_cycles)
 
 
-def born_period(
+def onset_m(
     strobed: StrobedMap[Any], excess: float = 1e-3, *, below: float = BELOW, most_cycles: int = 4000
 ) -> int:
-    """Period of the orbit `born` at `excess`, in drive periods; 0 for none up to 64."""
-    return born(strobed, excess, below=below, most_cycles=most_cycles).period
+    """The m of `onset_orbit` at `excess`, in drive periods; 0 for none up to 64."""
+    return onset_orbit(strobed, excess, below=below, most_cycles=most_cycles).m
 
 
-def orbit_near(strobed: StroboscopicMap, state: State, period: int, impacts: int) -> PeriodicOrbit | None:
+def orbit_near(strobed: StroboscopicMap, state: State, m: int, impacts: int) -> PeriodicOrbit | None:
     """The stable, admissible orbit next to `state`, by shooting; None if there is none."""
     try:
-        family = Shooting(oscillator=strobed.oscillator, period=period, impacts=impacts)
+        family = Shooting(oscillator=strobed.oscillator, m=m, impacts=impacts)
         orbit = family.from_state(replace(state, time=0.0))
     except (ContactError, Refusal):
         return None
@@ -160,39 +160,39 @@ Cycle = tuple[PeriodicOrbit, StrobedOrbit[State]]  # an orbit, and one period of
 
 
 class _Proof:
-    """The proof of the module's docstring, block after block of a transient."""
+    """The proof of the module's docstring, strobes after strobes of a transient."""
 
-    def __init__(self, strobed: StroboscopicMap, largest_period: int, rounding: float) -> None:
-        self.strobed, self.largest_period, self.rounding = strobed, largest_period, rounding
+    def __init__(self, strobed: StroboscopicMap, largest_m: int, rounding: float) -> None:
+        self.strobed, self.largest_m, self.rounding = strobed, largest_m, rounding
         self.known: Cycle | None = None
         self.before = np.inf
         self.failed = np.inf  # change over a period when an orbit was looked for in vain
 
-    def look(self, state: State, period: int, impacts: int) -> Cycle | None:
+    def look(self, state: State, m: int, impacts: int) -> Cycle | None:
         """The orbit next to `state`; None if it has a shorter period or is not found."""
-        orbit = orbit_near(self.strobed, state, period, impacts)
+        orbit = orbit_near(self.strobed, state, m, impacts)
         if orbit is None:
             return None
-        cycle = self.strobed.orbit(replace(orbit.strobe_state(), time=0.0), period)
-        points, counts = np.tile(cycle.points, (2, 1)), np.zeros(2 * period)
-        shortest = period_of(points, counts, largest_period=period, tolerance=ALIKE * self.rounding)
-        return (orbit, cycle) if shortest == period else None
+        cycle = self.strobed.orbit(replace(orbit.strobe_state(), time=0.0), m)
+        points, counts = np.tile(cycle.points, (2, 1)), np.zeros(2 * m)
+        shortest = repeats_after(points, counts, largest_m=m, tolerance=ALIKE * self.rounding)
+        return (orbit, cycle) if shortest == m else None
 
-    def after(self, run: StrobedOrbit[State]) -> tuple[int, StrobedOrbit[State]]:
-        """The period, and a block on the orbit in the phase of the motion; 0 and `run` without a proof."""
-        strobed, points, end = self.strobed, run.points, run.end
-        rough = period_of(
-            points, run.impacts, largest_period=self.largest_period, tolerance=FIRST_LOOK * strobed.scale
+    def after(self, strobes: StrobedOrbit[State]) -> tuple[int, StrobedOrbit[State]]:
+        """m, and a block on the orbit in the phase of the motion; 0 and `strobes` without a proof."""
+        strobed, points, end = self.strobed, strobes.points, strobes.end
+        rough = repeats_after(
+            points, strobes.impacts, largest_m=self.largest_m, tolerance=FIRST_LOOK * strobed.scale
         )
-        hits, found = int(run.impacts[-rough:].sum()), None
-        if self.known is None or (self.known[0].period, self.known[0].impacts) != (rough, hits):
+        hits, found = int(strobes.impacts[-rough:].sum()), None
+        if self.known is None or (self.known[0].m, self.known[0].impacts) != (rough, hits):
             self.known, self.before = None, np.inf
             if rough and hits == 0:
-                motion = strobed.oscillator.motion()
-                if free_for_good(motion, *deviations(motion, 0.0, end.displacement, end.velocity)):
+                numbers = strobed.oscillator.numbers()
+                if free_for_good(numbers, *deviations(numbers, 0.0, end.displacement, end.velocity)):
                     found = 1, strobed.steady()
-            elif 0 < rough <= self.largest_period // 2:
-                open_by = float(np.max(np.abs(points[rough:] - points[:-rough])[-self.largest_period :]))
+            elif 0 < rough <= self.largest_m // 2:
+                open_by = float(np.max(np.abs(points[rough:] - points[:-rough])[-self.largest_m :]))
                 if not CLOSER * self.failed <= open_by <= self.failed / CLOSER**3:
                     self.known = self.look(end, rough, hits)
                     self.failed = open_by if self.known is None else np.inf
@@ -205,5 +205,5 @@ class _Proof:
                 found = rough, strobed.orbit(cycle.end, phase or rough).end
             self.before = distance
         if found is None:
-            return 0, run
+            return 0, strobes
         return found[0], strobed.orbit(replace(found[1], time=end.time), len(points))

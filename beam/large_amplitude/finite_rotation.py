@@ -13,7 +13,7 @@ p' neglects e, a few parts in 1e5. The theory of thin strips leaves terms of thi
 belongs to the curvature per length at rest or per stretched length. Rotations stay below a quarter turn.
 
 Supports, masses, the tip and its displacement are linear in u and w, as in small motions. Mesh, ties and M
-are therefore those of `assembly`. A straight strip keeps u here, since its end comes nearer as it bends.
+are therefore those of ``beam.assembly``. A straight strip keeps u here, since its end comes nearer as it bends.
 
 Under a rigid rotation of any angle, e and p' vanish to rounding, also on arcs (b is the sine of the angle).
 """
@@ -29,12 +29,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import block_diag, bsr_array, csr_array, vstack
 
-from .assembly import Discretization, assemble
-from .modes import natural_modes
-from .parameters import Array, require
-from .pieces import Field
-from .spring import LeafSpring
-from .strip_element import bend, stretch
+from ..assembly import Discretization, assemble
+from ..modes import natural_modes
+from ..parameters import Array, require
+from ..pieces import Field
+from ..spring import LeafSpring
+from ..strip_element import bend, stretch
 
 
 def _strains(u: Field, w: Field, k: float) -> tuple[Field, ...]:

@@ -20,7 +20,7 @@ from contact.trajectory import Regime, State, Trajectory
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class MotionDerivatives:
-    """A simulated motion `run` and its derivatives with respect to its start (q, q') and P parameters.
+    """A simulated `trajectory` and its derivatives with respect to its start (q, q') and P parameters.
 
     Parameters
     ----------
@@ -30,7 +30,7 @@ class MotionDerivatives:
         Derivatives of the states (q, q') at the strobes, and at the requested times, which stay fixed.
     """
 
-    run: Trajectory
+    trajectory: Trajectory
     impact_time: Array
     strobes: Array
     states: Array
@@ -56,23 +56,23 @@ def motion_derivatives(
         raise InvalidValue(f"regime of the state is {state.regime}; it must be 0, off the stop")
     wanted = require_array("times", () if times is None else times, "s", dimensions=1, words="a rising array")
     several = Sensitivities(oscillator=oscillator, changes=changes)
-    run, n = simulate(oscillator, state, periods=periods, times=wanted), oscillator.n_modes
-    replay = Replay(several, run, state)
+    trajectory, n = simulate(oscillator, state, periods=periods, times=wanted), oscillator.n_modes
+    replay = Replay(several, trajectory, state)
     replay.tangent = _tangent_of_state(several, state.time)
-    times, place = np.unique([*run.strobe_time, *wanted, run.end.time], return_inverse=True)
-    ends = [run.strobe_time.size, run.strobe_time.size + wanted.size]
+    times, place = np.unique([*trajectory.strobe_time, *wanted, trajectory.end.time], return_inverse=True)
+    ends = [trajectory.strobe_time.size, trajectory.strobe_time.size + wanted.size]
     strobes, states, _end = np.split(replay.along(times)[place], ends)
     states[:, :, 2 * n :] += several.steady(wanted)
     strobes[:, :, 2 * n :] += several.steady(0.0)
-    number = np.round(run.strobe_time / oscillator.period)
-    q = np.hstack([run.strobe_displacement, run.strobe_velocity])
+    number = np.round(trajectory.strobe_time / oscillator.period)
+    q = np.hstack([trajectory.strobe_displacement, trajectory.strobe_velocity])
     rates = deviation_rates_at_strobe(oscillator, q, False)
-    for i in np.flatnonzero(replay.touching(run.strobe_time)):
+    for i in np.flatnonzero(replay.touching(trajectory.strobe_time)):
         rates[i] = deviation_rates_at_strobe(oscillator, q[i], True)
     strobes[:, :, 2 * n :] += np.multiply.outer(number[:, None] * rates, several.period)
-    found = np.array([replay.impact_time[i] for i in range(len(run.impacts))])
+    found = np.array([replay.impact_time[i] for i in range(len(trajectory.impacts))])
     impact_time = found.reshape(-1, 2 * n + len(several.changes))
-    return MotionDerivatives(run=run, impact_time=impact_time, strobes=strobes, states=states)
+    return MotionDerivatives(trajectory=trajectory, impact_time=impact_time, strobes=strobes, states=states)
 
 
 def _tangent_of_state(several: Sensitivities, time: float) -> Array:

@@ -1,4 +1,4 @@
-"""Families of which each orbit leads to its neighbours: Newton's method on the equations of an orbit.
+"""Families of orbits found one from another, by Newton's method on the equations of an orbit.
 
 The unknowns are the deviations (u, v) at the first touch, and its approach speed s through log s.  They give
 the drive (S, C) by two linear equations: the tip is at the stop, y = 0, with velocity y' = s.  An orbit with
@@ -15,9 +15,10 @@ import numpy as np
 
 from beam.parameters import Array, require, require_kind, require_whole, require_within
 from contact.errors import NotPeriodic
-from contact.orbits.families.equations import Iterate, driven_at, newton, shoot, sizes_of
-from contact.orbits.families.family import PeriodicOrbit
+from contact.orbits.families.equations import driven_at, shoot, sizes_of
 from contact.orbits.families.kick import KickFamily
+from contact.orbits.families.newton import Iterate, newton
+from contact.orbits.families.touch_orbit import PeriodicOrbit
 from contact.oscillator import ImpactOscillator
 from contact.sensitivity.change import Sensitivities
 from contact.simulation import simulate
@@ -29,11 +30,11 @@ Beyond this value it is rounding: the approach speed does not tell an orbit from
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class ContinuableFamily:
-    """The orbits with `impacts` touches in `period` drive periods; the `oscillator` has any amplitude."""
+class NewtonFamily:
+    """The orbits with `impacts` touches in `m` drive periods; the `oscillator` has any amplitude."""
 
     oscillator: ImpactOscillator
-    period: int
+    m: int
     impacts: int = 1
 
     def __post_init__(self) -> None:
@@ -43,7 +44,7 @@ class ContinuableFamily:
     @cached_property
     def kicks(self) -> KickFamily:
         """The description by kicks, from which a search starts."""
-        return KickFamily(oscillator=self.oscillator, period=self.period)
+        return KickFamily(oscillator=self.oscillator, m=self.m)
 
     @cached_property
     def _sizes(self) -> Array:
@@ -68,7 +69,7 @@ class ContinuableFamily:
         speed, start = self.oscillator.unit_speed * math.exp(x[-1]), x[:-1] * self._sizes
         drive, grazing = rows @ np.append(start, speed) + offset, self.oscillator.grazing_amplitude()
         here, at = driven_at(self.oscillator, drive)
-        orbit, miss, flow = shoot(Sensitivities(oscillator=here), at, start, self.period, self.impacts, speed)
+        orbit, miss, flow = shoot(Sensitivities(oscillator=here), at, start, self.m, self.impacts, speed)
         stretch = np.append(self._sizes, speed)
         closing = flow @ np.vstack([np.eye(n, size), rows]) - np.eye(n, size)
         return Iterate(
@@ -89,7 +90,7 @@ class ContinuableFamily:
 
         point = newton(self.equations, x, pick)
         if not abs(point.direction[-1]) * STEEPEST > 1.0:
-            words = f"the orbits of period {self.period} do not follow from their approach velocity here"
+            words = f"the orbits of period {self.m} do not follow from their approach velocity here"
             raise point.orbit.failure(NotPeriodic, words)
         return point.orbit if speed is None else replace(point.orbit, speed=speed)
 
@@ -116,29 +117,29 @@ class ContinuableFamily:
     def from_state(self, state: State) -> PeriodicOrbit:
         """The orbit on which a simulated motion has settled, next to its first touch from `state`."""
         require_kind("state", state, State, "a State")
-        run = simulate(self.oscillator, state, periods=self.period + 1)
-        hits = run.impacts.kind == ImpactKind.IMPACT
+        trajectory = simulate(self.oscillator, state, periods=self.m + 1)
+        hits = trajectory.impacts.kind == ImpactKind.IMPACT
         hits[:1] &= state.regime == Regime.OUTSIDE  # a contact under way began with a touch that is not known
         if not np.any(hits):
             words = "the motion has no impact to start from"
             raise NotPeriodic(time=state.time, gap=0.0, velocity=0.0, detail=words)
         i = int(np.flatnonzero(hits)[0])
-        start = self.unknowns(run.impacts.deviations_start[i].ravel(), run.impacts.approach[i])
+        start = self.unknowns(trajectory.impacts.deviations_start[i].ravel(), trajectory.impacts.approach[i])
         return self._solve(start, excess=self.oscillator.excess)
 
 
-def require_orbit(family: ContinuableFamily, name: str, orbit: object, *, member: bool = False) -> None:
+def require_orbit(family: NewtonFamily, name: str, orbit: object, *, member: bool = False) -> None:
     """Refuse what is no orbit, or one of other modes or of a period that does not divide that of the family.
 
     A `member` has the period and the touches of the family and, to rounding, its oscillator at any amplitude.
     """
     known: PeriodicOrbit = require_kind(name, orbit, PeriodicOrbit, "a PeriodicOrbit")
     pair = known.oscillator, family.oscillator
-    period = known.period if family.period % known.period == 0 and not member else family.period
-    counts = [("drive periods", known.period, period), ("modes", *(one.n_modes for one in pair))]
+    m = known.m if family.m % known.m == 0 and not member else family.m
+    counts = [("drive periods", known.m, m), ("modes", *(one.n_modes for one in pair))]
     for what, found, valid in [*counts, ("touches", known.impacts, family.impacts)][: 3 if member else 2]:
         require(found == valid, f"{name} has {found} {what}; it must have {valid}, like the family")
-    numbers = zip(*(one.with_amplitude(1.0).motion() for one in pair), strict=True)
+    numbers = zip(*(one.with_amplitude(1.0).numbers() for one in pair), strict=True)
     same = all(np.shape(a) == np.shape(b) and np.allclose(a, b, 1e-9, 1e-12) for a, b in numbers)
     words = "is not that of the family; it must be the same but for the amplitude of its drive"
     require(same or not member, f"oscillator of the {name} {words}")

@@ -1,12 +1,12 @@
-"""`Motion`: the numbers of one impact oscillator, as kernels see them.
+"""`Numbers`: the numbers of one impact oscillator, as kernels see them.
 
 One container holds all that flights, touches and orbits need: scalars, and one table with the modes as
 columns.  The table is filled up to a multiple of eight with modes that stay zero, so that a processor handles
 several in one instruction.  (Passing a dozen arrays to a kernel would take several times as long as
 propagating eight modes.)  The equations are those of ``contact.flight.modal_flow``.
 
-An oscillator with several stops has one `Motion` too, in which their tables are stacked.  Each stop sees the
-same modes with weights and numbers of its own, and `seen_from` gives the `Motion` as one of them sees it.
+An oscillator with several stops has one `Numbers` too, in which their tables are stacked.  Each stop sees the
+same modes with weights and numbers of its own, and `seen_from` gives the `Numbers` as one of them sees it.
 Kernels of flights, touches and laws take such a view; only loops that choose between stops take the stack.
 """
 
@@ -28,14 +28,14 @@ doubles, omega, 1/omega (or zero), 1/max(omega, c/2) (or the period), S, C, g/om
 
 NUMBERS = 12
 """In a stack, the row after those of a stop that holds `_OWN`; one more holds law, numbers, and where in the
-row `Motion.table` its own table begins, with the numbers of its rows and columns, and whether stops that are
+row `Numbers.table` its own table begins, with the numbers of its rows and columns, and whether stops that are
 met together act one after the other."""
 STACKED = 14  # rows of the table for each of several stops
 
 _OWN = "level", "tip_sine", "tip_cosine", "amplitude", "gap", "inverse_mass"
 
 
-class Motion(NamedTuple):
+class Numbers(NamedTuple):
     """The numbers of an oscillator, as one stop sees them."""
 
     modes: np.ndarray  # the table, shape (12, m): m is the number of modes, filled up to a multiple of eight
@@ -99,7 +99,7 @@ class Motion(NamedTuple):
         return np.multiply.outer(self.phi, np.asarray(displacement) / self.inverse_mass)
 
 
-def motion_of(
+def numbers_of(
     omega: np.ndarray,
     decay: np.ndarray,
     phi: np.ndarray,
@@ -110,7 +110,7 @@ def motion_of(
     period: float = 1.0,
     response: np.ndarray | None = None,
     load: np.ndarray | None = None,
-) -> Motion:
+) -> Numbers:
     """The numbers of an oscillator with these omega, c, phi, `gap` [m], `drive` w [rad/s] and `period` [s].
 
     `code`, `numbers` and `table` of the `law` are read.  `response` is S + iC [m kg^0.5], complex, and `load`
@@ -132,7 +132,7 @@ def motion_of(
     modes[SINE:, :n] = response.real, response.imag, offset
     all_underdamped = bool(np.all((high > 0) & (omega > 0.5 * decay) & (drift == 0)))
     tip = complex(phi @ response)
-    return Motion(
+    return Numbers(
         modes=modes,
         size=n,
         level=float(phi @ offset) - float(gap),
@@ -154,7 +154,7 @@ def motion_of(
     )
 
 
-def stacked(views: Sequence[Motion], sequential: bool) -> Motion:
+def stacked(views: Sequence[Numbers], sequential: bool) -> Numbers:
     """The numbers of an oscillator with several stops, from those that each of them sees.
 
     `sequential`: whether stops that are met at one instant act one after the other.
@@ -171,56 +171,60 @@ def stacked(views: Sequence[Motion], sequential: bool) -> Motion:
 
 
 @inlined
-def stops_of(motion):
+def stops_of(numbers):
     """The number of stops."""
-    return max(motion.modes.shape[0] // STACKED, 1)
+    return max(numbers.modes.shape[0] // STACKED, 1)
 
 
-def _seen_from(motion, j):
+def _seen_from(numbers, j):
     """The motion as the stop of number `j` in a stack of several sees it."""
     top = STACKED * j
-    own, code = motion.modes[top + NUMBERS], motion.modes[top + NUMBERS + 1]
+    own, code = numbers.modes[top + NUMBERS], numbers.modes[top + NUMBERS + 1]
     first, rows, columns = int(code[3]), int(code[4]), int(code[5])
-    return Motion(
-        motion.modes[top : top + NUMBERS],
+    return Numbers(
+        numbers.modes[top : top + NUMBERS],
         own[1],
         own[2],
         own[3],
-        motion.steady_energy,
-        motion.size,
+        numbers.steady_energy,
+        numbers.size,
         own[0],
-        motion.drive,
-        motion.period,
+        numbers.drive,
+        numbers.period,
         own[4],
         own[5],
         int(code[0]),
         code[1],
         code[2],
-        motion.all_underdamped,
-        motion.phase_rate,
-        motion.fastest,
-        motion.table[0][first : first + rows * columns].reshape(rows, columns),
+        numbers.all_underdamped,
+        numbers.phase_rate,
+        numbers.fastest,
+        numbers.table[0][first : first + rows * columns].reshape(rows, columns),
     )
 
 
 seen_from = inlined(_seen_from)
 
 
-def views_of(motion: Motion) -> list[Motion]:
+def views_of(numbers: Numbers) -> list[Numbers]:
     """The motion as each of its stops sees it."""
-    count = len(motion.modes) // STACKED
-    return [_seen_from(motion, j) for j in range(count)] if count else [motion]
+    count = len(numbers.modes) // STACKED
+    return [_seen_from(numbers, j) for j in range(count)] if count else [numbers]
 
 
 @kernel
-def with_drive(motion, factor):
+def with_drive(numbers, factor):
     """The same oscillator with one stop at `factor` times its base amplitude."""
-    modes = motion.modes.copy()
-    for k in range(motion.size):
+    modes = numbers.modes.copy()
+    for k in range(numbers.size):
         modes[SINE, k] *= factor
         modes[COSINE, k] *= factor
-    sine, cosine, size = motion.tip_sine * factor, motion.tip_cosine * factor, motion.amplitude * abs(factor)
-    return Motion(modes, sine, cosine, size, motion.steady_energy * factor * factor, *motion[5:])
+    sine, cosine, size = (
+        numbers.tip_sine * factor,
+        numbers.tip_cosine * factor,
+        numbers.amplitude * abs(factor),
+    )
+    return Numbers(modes, sine, cosine, size, numbers.steady_energy * factor * factor, *numbers[5:])
 
 
 @kernel
@@ -234,11 +238,11 @@ def damped_frequency(omega, decay):
     return square_root(d, ((p - (d - back)) + (-r - back)) + (ep - er))  # with the rounding error (Knuth)
 
 
-def with_only_mode(motion: Motion, k: int) -> Motion:
+def with_only_mode(numbers: Numbers, k: int) -> Numbers:
     """The oscillator with the same steady tip motion and only mode `k` free."""
-    modes = np.zeros((len(motion.modes), LANES))
+    modes = np.zeros((len(numbers.modes), LANES))
     modes[DAMPED] = 1.0
-    modes[:, 0] = motion.modes[:, k]
+    modes[:, 0] = numbers.modes[:, k]
     damped, omega, load = modes[DAMPED, 0], modes[OMEGA, 0], modes[LOAD, 0]
     all_underdamped = bool(damped > 0.0 and omega > 0.5 * modes[DECAY, 0] and load == 0.0)
-    return motion._replace(modes=modes, size=1, all_underdamped=all_underdamped, phase_rate=float(damped))
+    return numbers._replace(modes=modes, size=1, all_underdamped=all_underdamped, phase_rate=float(damped))

@@ -1,7 +1,7 @@
 """The curve of a family of periodic orbits over the drive amplitude, and how it is entered and left.
 
 Its unknowns are the deviations and the logarithm of the approach velocity of the first touch
-(``contact.orbits.families.continuable_family``).
+(``contact.orbits.families.newton_family``).
 """
 
 import math
@@ -12,9 +12,9 @@ from beam.parameters import Array
 from contact.errors import BranchEnded, ContactError
 from contact.orbits.branches.branch import SHORTER, Branch, Leg, branch_of, walk
 from contact.orbits.branches.curve import Curve, grazes
-from contact.orbits.families.continuable_family import ContinuableFamily
-from contact.orbits.families.equations import Equations, Point
-from contact.orbits.families.family import PeriodicOrbit
+from contact.orbits.families.newton import CurvePoint, Equations
+from contact.orbits.families.newton_family import NewtonFamily
+from contact.orbits.families.touch_orbit import PeriodicOrbit
 
 FIRST_STRIDE, LONGEST_STRIDE = 0.02, 0.3
 """Steps on the way to an event: the first, as it may be close, and the longest."""
@@ -38,10 +38,10 @@ WHOLE = ("range", "closed", SHORTER)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class FamilyCurve(Curve):
+class AmplitudeCurve(Curve):
     """The curve of a family between two approach velocities [m/s]; its parameter is the excess."""
 
-    family: ContinuableFamily
+    family: NewtonFamily
     slowest: float
     fastest: float
     far: float = math.inf
@@ -53,7 +53,7 @@ class FamilyCurve(Curve):
         unit = self.like.oscillator.unit_speed
         return math.log(self.slowest / unit), math.log(self.fastest / unit)
 
-    def equations(self, x: Array, touches: int) -> Equations:
+    def equations(self, x: Array, impacts: int) -> Equations:
         """The equations of the family, which has its own number of touches."""
         return self.family.equations
 
@@ -61,7 +61,7 @@ class FamilyCurve(Curve):
         """The unknowns of an orbit from one of its touches; the time follows from the others."""
         return self.family.unknowns(start, speed)
 
-    def parameter(self, point: Point) -> float:
+    def parameter(self, point: CurvePoint) -> float:
         """The excess [1]."""
         return point.orbit.excess
 
@@ -69,7 +69,7 @@ class FamilyCurve(Curve):
         """Beyond `far` times 2 pi f gap the deviations, and so the steps, grow with the approach velocity."""
         return max(1.0, math.exp(x[-1]) / self.far)
 
-    def start(self) -> Point:
+    def start(self) -> CurvePoint:
         """The point next to the orbit `like`."""
         x = self.family.unknowns(self.like.deviations, self.like.speed)
         return self.at(x, self.like.impacts)
@@ -82,7 +82,7 @@ def branch_ended(orbit: PeriodicOrbit, words: str) -> BranchEnded:
     return error
 
 
-def downhill(family: ContinuableFamily, start: PeriodicOrbit) -> Iterator[Leg]:
+def downhill(family: NewtonFamily, start: PeriodicOrbit) -> Iterator[Leg]:
     """The legs of the branch from `start` towards lower amplitudes."""
     curve = _curve_through(start, family)
     first = curve.start()
@@ -96,16 +96,16 @@ def at_graze(ended: str, last: PeriodicOrbit) -> bool:
     return slow or (ended not in ("range", "closed") and grazes(last))
 
 
-def _curve_through(orbit: PeriodicOrbit, family: ContinuableFamily) -> FamilyCurve:
+def _curve_through(orbit: PeriodicOrbit, family: NewtonFamily) -> AmplitudeCurve:
     """The curve of a family through `orbit`, over the speeds of a search and from below to above its own."""
     low, high = (part * family.oscillator.unit_speed for part in (LEAST_SPEED, GREATEST_SPEED))
     low, high = min(low, 0.5 * orbit.speed), max(high, 2.0 * orbit.speed)
-    return FamilyCurve(like=orbit, family=family, slowest=low, fastest=high, far=FAR)
+    return AmplitudeCurve(like=orbit, family=family, slowest=low, fastest=high, far=FAR)
 
 
 def whole_branch(
-    family: ContinuableFamily, near: PeriodicOrbit | None
-) -> tuple[FamilyCurve, list[Point], Branch]:
+    family: NewtonFamily, near: PeriodicOrbit | None
+) -> tuple[AmplitudeCurve, list[CurvePoint], Branch]:
     """The whole branch with its curve and points.
 
     Raises BranchEnded if there is no orbit to start from, or if the branch is lost on the way.
@@ -129,5 +129,5 @@ def whole_branch(
                 words = "at the greatest speed of the search the amplitude does not yet rise"
                 raise branch_ended(last, words)
         return curve, points, branch
-    words = f"no orbit of period {family.period} was found to start from"
+    words = f"no orbit of period {family.m} was found to start from"
     raise BranchEnded(time=0.0, gap=0.0, velocity=0.0, detail=words)

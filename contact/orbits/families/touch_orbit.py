@@ -1,20 +1,13 @@
-"""The common properties of all families of periodic orbits, whatever describes the motion.
+"""Periodic orbits of an impact oscillator, given by their first touch.
 
-A family holds the orbits of period m with one collision, or a given number of touches, in m drive periods.
-It is a curve over the approach speed v of the first touch.  Over the excess F/F_g - 1 it turns round at its
-fold, where a node and a saddle meet.  Four descriptions offer it:
-
-    ``single_impact.MaximalFamily``      Newton's law, several modes, closed form
-    ``kick.KickFamily``                  any law, the collision as a kick of all modes
-    ``contact.orbits.shooting.Shooting`` any law, any number of touches, Newton's method on exact tangents
-    ``nordmark_orbits.MapFamily``        the Nordmark map (``contact.maps``), closed form; its "speed" is
-                                         sqrt(x) at the impact
+The state just before the first touch, as deviations from the steady motion, and the drive time of the touch
+give the whole orbit.  `PeriodicOrbit` is what shooting finds: it has the record of all its touches.
 """
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Protocol, TypeVar
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +15,8 @@ from numpy.typing import NDArray
 from beam.parameters import Array
 from contact.errors import ContactError
 from contact.flight.crossing import CROSSES, FREE, first_crossing
-from contact.flight.modal_flow import steady_motion, tip_state
+from contact.flight.modal_flow import steady_motion
+from contact.flight.tip import tip_state
 from contact.flight.tip_search import peaks_of_flight, tip_at
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
@@ -39,51 +33,6 @@ distance, and the equations are singular up to about this distance."""
 SLACK = 1e-6  # part of a drive period by which the closing touch may be missed, in addition to the residual
 
 
-class Orbit(Protocol):
-    """A periodic orbit with impacts."""
-
-    @property
-    def period(self) -> int:
-        """m, in drive periods."""
-
-    @property
-    def excess(self) -> float:
-        """F/F_g - 1 [1]."""
-
-    @property
-    def speed(self) -> float:
-        """Approach speed of the first touch [m/s]."""
-
-    @property
-    def multipliers(self) -> NDArray[np.complex128]:
-        """Floquet multipliers, largest modulus first."""
-
-    @property
-    def stable(self) -> bool:
-        """Whether all multipliers lie inside the unit circle."""
-
-    @property
-    def admissible(self) -> bool:
-        """Whether the tip touches the stop at the impacts of the orbit only."""
-
-
-class Family(Protocol):
-    """The orbits of one period, in one description."""
-
-    @property
-    def period(self) -> int:
-        """m, in drive periods."""
-
-    def orbit(self, speed: float) -> Orbit:
-        """The orbit with approach speed `speed` [m/s]."""
-
-    def orbits(self, excess: float) -> tuple[Orbit, ...]:
-        """The orbits at F/F_g - 1 = `excess`, by rising speed."""
-
-    def fold(self) -> Orbit | None:
-        """The orbit of least amplitude, at which node and saddle meet; None if there is none."""
-
-
 @dataclass(frozen=True, kw_only=True, eq=False)
 class TouchOrbit(ABC):
     """A periodic orbit of an impact oscillator, by its first touch.
@@ -92,7 +41,7 @@ class TouchOrbit(ABC):
     ----------
     oscillator : ImpactOscillator
         At the drive amplitude of the orbit.
-    period : int
+    m : int
         m, in drive periods.
     excess, speed, phase : float
         F/F_g - 1 [1], and approach velocity [m/s] and drive time [s] of the first touch.
@@ -101,7 +50,7 @@ class TouchOrbit(ABC):
     """
 
     oscillator: ImpactOscillator = field(repr=False)
-    period: int
+    m: int
     excess: float
     speed: float
     phase: float
@@ -133,7 +82,7 @@ class TouchOrbit(ABC):
     @property
     def duration(self) -> float:
         """m/f [s]."""
-        return self.period * self.oscillator.period
+        return self.m * self.oscillator.period
 
     @cached_property
     def multipliers(self) -> NDArray[np.complex128]:
@@ -150,9 +99,9 @@ class TouchOrbit(ABC):
     def admissible(self) -> bool:
         """Whether the last flight meets the wall at its end only (certified; a graze counts as a meeting)."""
         time, u, v, leaves, slack = self.release()
-        length, motion = self.duration - time, self.oscillator.motion()
+        length, numbers = self.duration - time, self.oscillator.numbers()
         outcome, met = first_crossing(
-            motion, self.phase + time, u.copy(), v.copy(), length * (1.0 + CLOSING), 1 if leaves else 2
+            numbers, self.phase + time, u.copy(), v.copy(), length * (1.0 + CLOSING), 1 if leaves else 2
         )
         return bool(outcome == FREE or (outcome == CROSSES and abs(met - length) <= slack))
 
@@ -162,18 +111,18 @@ class TouchOrbit(ABC):
 
     def state(self) -> State:
         """The physical state just before the first touch, on the near side of the stop to the last digit."""
-        motion = self.oscillator.motion()
-        q, q_rate = steady_motion(motion, np.array([self.phase]))
-        behind = max(0.0, tip_state(motion, self.phase, self.displacement, self.velocity)[0])
-        back = motion.least_change(behind)  # rounding of the sum alone
+        numbers = self.oscillator.numbers()
+        q, q_rate = steady_motion(numbers, np.array([self.phase]))
+        behind = max(0.0, tip_state(numbers, self.phase, self.displacement, self.velocity)[0])
+        back = numbers.least_change(behind)  # rounding of the sum alone
         return State(
             displacement=self.displacement - back + q[0], velocity=self.velocity + q_rate[0], time=self.phase
         )
 
     def strobe_state(self) -> State:
         """The state at the strobe that follows the first touch."""
-        period = self.oscillator.period
-        return simulate(self.oscillator, self.state(), duration=period - self.phase % period).end
+        m = self.oscillator.period
+        return simulate(self.oscillator, self.state(), duration=m - self.phase % m).end
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -213,7 +162,7 @@ class PeriodicOrbit(TouchOrbit):
         """
         rows = np.column_stack([self.record.log[name] for name in ("start", "end", "approach", "rebound")])
         k, shift = self.impacts, np.zeros(4)
-        for times in (times for times in range(k, 1, -1) if k % times == self.period % times == 0):
+        for times in (times for times in range(k, 1, -1) if k % times == self.m % times == 0):
             shift[:2] = self.duration / times
             off = np.abs(rows[k // times :] - shift - rows[: -(k // times)])
             if np.all(off <= within * np.max(np.abs(rows), axis=0)):
@@ -237,10 +186,10 @@ def peaks(orbit: PeriodicOrbit) -> list[tuple[int, float, float]]:
     Each is given by the number of the touch before it, the time since its end [s], and the height over the
     stop [m].
     """
-    motion, log, found = orbit.oscillator.motion(), orbit.record.log, list[tuple[int, float, float]]()
+    numbers, log, found = orbit.oscillator.numbers(), orbit.record.log, list[tuple[int, float, float]]()
     ends = np.append(log["start"][1:], orbit.duration)
     for i, (left, (u, v), end) in enumerate(zip(log["end"], orbit.record.states[:, 1], ends, strict=True)):
         base = float(orbit.phase + left)
-        times = peaks_of_flight(motion, base, u, v, (0.0, end - left), False).tolist()
-        found += [(i, s, float(tip_at(motion, base, u, v, s)[0])) for s in times]
+        times = peaks_of_flight(numbers, base, u, v, (0.0, end - left), False).tolist()
+        found += [(i, s, float(tip_at(numbers, base, u, v, s)[0])) for s in times]
     return found

@@ -1,0 +1,75 @@
+"""The plan of a simulation, with times as stretches and clocks (``contact.flight.clock``)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from beam.parameters import InvalidValue, require, require_array, require_whole, require_within, shown
+from contact.flight.clock import split_time
+from contact.oscillator import ImpactOscillator
+from contact.trajectory import State
+
+MOST_STORED = 2.0**28  # largest number of values in the strobes of one run: 2 GB
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Plan:
+    """What a simulation has to do: its start and end, and the times at which its states are wanted."""
+
+    start: State
+    length: float  # duration [s]
+    first: int  # stretches of start and end
+    last: int
+    clock: float  # clocks of start and end [s]
+    clock_end: float
+    times: np.ndarray  # at which the state is wanted [s], shape (n_times,)
+    sample_stretch: np.ndarray  # the same as stretches and clocks [s]
+    sample_clock: np.ndarray
+
+
+def plan_of(
+    oscillator: ImpactOscillator,
+    start: State,
+    duration: float | None,
+    periods: int | None,
+    times: np.ndarray | None,
+) -> Plan:
+    """The plan of a motion from `start` over one of `duration` and `periods`; wrong values are refused."""
+    words = "duration and periods are both given or both missing; give exactly one of them"
+    require((duration is None) != (periods is None), words)
+    period = oscillator.period
+    whole = 0 if periods is None else require_whole("periods", periods, "drive periods")
+    length = whole * period if whole else require_within("duration", duration, "s", above=0)
+    if length / period * 2 * oscillator.n_modes > MOST_STORED:
+        raise InvalidValue(
+            f"duration is {length:g} s, {length / period:g} drive periods with {oscillator.n_modes} modes; "
+            f"the strobes kept must stay below {MOST_STORED:g} numbers, so run it in pieces"
+        )
+    first, clock = (x.item() for x in split_time(start.time, period))
+    last, clock_end = first + whole, clock
+    if not whole:
+        last, clock_end = (x.item() for x in split_time(start.time + length, period))
+    words = "a rising array"
+    wanted = require_array("times", () if times is None else times, "s", dimensions=1, words=words)
+    if np.any(np.diff(wanted) < 0.0):  # the sentence is slow to make
+        raise InvalidValue(f"times is {shown(wanted.tolist())} s; it must be {words}")
+    begin, end, beside = start.time, start.time + length, 1e-12 * length
+    if wanted.size and (wanted[0] < begin - beside or wanted[-1] > end + beside):
+        words = f"they must lie within {begin} to {end} s"
+        raise InvalidValue(f"times run from {wanted[0]} to {wanted[-1]} s; {words}")
+    sample_stretch, sample_clock = split_time(wanted, period)
+    late = (sample_stretch > last) | ((sample_stretch == last) & (sample_clock > clock_end))
+    sample_stretch[late], sample_clock[late] = last, clock_end
+    early = (sample_stretch < first) | ((sample_stretch == first) & (sample_clock < clock))
+    sample_stretch[early], sample_clock[early] = first, clock
+    return Plan(
+        start=start,
+        length=length,
+        first=first,
+        last=last,
+        clock=clock,
+        clock_end=clock_end,
+        times=wanted,
+        sample_stretch=sample_stretch,
+        sample_clock=sample_clock,
+    )
