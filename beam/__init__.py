@@ -37,10 +37,6 @@ if TYPE_CHECKING:
     from .assembly import Discretization, assemble, default_elements
     from .centreline import Arc, Centreline, Straight
     from .damping import ConstantLossFactor, ConstantRatio, Damping, MeasuredDecay, Rayleigh, StripDamping
-    from .export import write_frames, write_mode_motion, write_modes
-    from .frequency_equation import ExactModes, UniformBeam, exact_modes, frequency_function
-    from .large_amplitude import Backbone, FiniteRotation, PeriodicMotion, backbone_coefficient, periodic_motion
-    from .material import ALUMINA, BRASS, DAMPING_TAPE, STEEL, Material
     from .derivatives import (
         ModalChange,
         decay_rate_change,
@@ -48,6 +44,16 @@ if TYPE_CHECKING:
         tip_mass_change,
         with_tip_mass,
     )
+    from .export import write_frames, write_mode_motion, write_modes
+    from .frequency_equation import ExactModes, UniformBeam, exact_modes, frequency_function
+    from .large_amplitude import (
+        Backbone,
+        FiniteRotation,
+        PeriodicMotion,
+        backbone_coefficient,
+        periodic_motion,
+    )
+    from .material import ALUMINA, BRASS, DAMPING_TAPE, STEEL, Material
     from .modal_model import ModalModel, single_mode
     from .modes import Modes, ShapesAlong, natural_modes
     from .parameters import InvalidType, InvalidValue, Refusal, SuspiciousValue, suspect

@@ -6,7 +6,7 @@ Free vibration of mode 1, the first that moves the tip, at the tip amplitude A [
 
 L [m] the length of the first straight run from s = 0, or of the whole centreline if none is straight. The
 motion is mode 1, A y_1 cos(q) with y_1 of unit tip displacement, and the response A^2 (y_0 + y_2 cos(2 q)) of
-the whole strip at rest and at twice the frequency. V is that of ``beam.large_amplitude.finite_rotation`` to the fourth order,
+the whole strip at rest and at twice the frequency. V is that of `finite_rotation` to the fourth order,
 with V_4 and the second-order force g = dV_3/dy at y_1:
 
     K y_0 = -g/2,     (K - 4 W^2 M) y_2 = -g/2,     m = y_1^T M y_1,     W = 2 pi f_0,
@@ -32,8 +32,8 @@ from itertools import dropwhile, takewhile
 from scipy.sparse.linalg import splu
 
 from ..centreline import Centreline
-from .finite_rotation import FiniteRotation
 from ..spring import LeafSpring
+from .finite_rotation import FiniteRotation
 
 
 @dataclass(frozen=True, kw_only=True)

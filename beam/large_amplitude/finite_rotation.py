@@ -13,7 +13,7 @@ p' neglects e, a few parts in 1e5. The theory of thin strips leaves terms of thi
 belongs to the curvature per length at rest or per stretched length. Rotations stay below a quarter turn.
 
 Supports, masses, the tip and its displacement are linear in u and w, as in small motions. Mesh, ties and M
-are therefore those of ``beam.assembly``. A straight strip keeps u here, since its end comes nearer as it bends.
+therefore come from ``beam.assembly``. A straight strip keeps u here, since its end comes nearer as it bends.
 
 Under a rigid rotation of any angle, e and p' vanish to rounding, also on arcs (b is the sine of the angle).
 """

@@ -24,8 +24,8 @@ from numpy.typing import NDArray
 from scipy.sparse import block_array, csc_array, csr_array
 from scipy.sparse.linalg import splu
 
-from .finite_rotation import FiniteRotation
 from ..parameters import Array, require, require_kind, require_whole, require_within
+from .finite_rotation import FiniteRotation
 
 MOST_STEPS = 30
 """Largest number of steps of Newton's method; it takes four or five."""

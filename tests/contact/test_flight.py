@@ -6,6 +6,7 @@ from dataclasses import replace
 import mpmath as mp
 import numpy as np
 import pytest
+from contact.flight.motion import COSINE, LOAD, OFFSET, SINE, Motion, damped_frequency, motion_of
 from oscillators import modes_on_stop, newton, spring
 
 from contact import ImpactOscillator, State, simulate
@@ -13,7 +14,6 @@ from contact.flight import modal_flow
 from contact.flight.elementary import EPS, exponential, sine_cosine
 from contact.flight.modal_flow import flow_matrix, mode_acceleration, propagate
 from contact.flight.tip import tip_rounding, tip_state
-from contact.flight.motion import COSINE, LOAD, OFFSET, SINE, Motion, damped_frequency, motion_of
 
 MODES = {  # omega [rad/s], c [1/s]
     "undamped": (150.0, 0.0),

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from contact.flight.motion import Motion
 from oscillators import modes_on_stop, newton, slow
 from tip_judge import Signal, highest, with_gap
 
@@ -19,7 +20,6 @@ from contact.flight.bounds import (
 from contact.flight.crossing import CROSSES, FREE, first_crossing
 from contact.flight.modal_flow import load_state, new_flight
 from contact.flight.tip import tip_rounding
-from contact.flight.motion import Motion
 
 GAP = 0.02
 

@@ -7,13 +7,13 @@ points per period of its fastest mode, every maximum is polished, the first one 
 from dataclasses import dataclass
 
 import numpy as np
+from contact.flight.motion import LOAD, Motion
 from oscillators import modes_on_stop
 
 from contact import ImpactOscillator
 from contact.flight.crossing import CROSSES, FREE, GRAZE_TOLERANCE, GRAZES, first_crossing
 from contact.flight.elementary import EPS
 from contact.flight.tip import tip_rounding
-from contact.flight.motion import LOAD, Motion
 
 Real = np.longdouble
 PLANTED = [sign * 10.0**-k for k in range(1, 13) for sign in (1.0, -1.0)]

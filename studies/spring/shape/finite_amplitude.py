@@ -2,7 +2,7 @@
 
     f = f_0 (1 + kappa (A/L)^2)   of the spring (``beam.backbone_coefficient``), L its straight run
     effective period              of small deviations from the motion that grazes (``contact.NonlinearMode``),
-                                  beside that of the spring with finite rotations (``beam.harmonic_balance``)
+                                  beside that of the spring with finite rotations (``beam.periodic_motion``)
     born period                   of Eq. (1) with the cubic stiffness and inertia of kappa, excess counted
                                   from the drive at which this motion grazes
 
