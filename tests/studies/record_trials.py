@@ -24,10 +24,10 @@ from record_information import blind, truth_of
 
 from beam import ModalModel, Refusal, single_mode
 from contact import ContactError, HarmonicDrive, ImpactOscillator, LinearContact, NewtonRestitution, Stop
-from studies.measurement.identify.estimates import estimates_of
-from studies.measurement.identify.fit import fit
-from studies.measurement.identify.records import Record
-from studies.measurement.identify.result import TOO_SMALL, Fit
+from studies.measurement.identify.fit.result import TOO_SMALL, Fit
+from studies.measurement.identify.fit.search import fit
+from studies.measurement.identify.record.records import Record
+from studies.measurement.identify.report import estimates_of
 from studies.physics.parameters import with_values
 
 PARTS = ("estimate", "low90", "high90", "standard_error")

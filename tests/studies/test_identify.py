@@ -14,12 +14,12 @@ from beam import InvalidValue
 from contact import DelayedRestitution, HuntCrossley, LinearContact, Stop, simulate
 from contact.orbits import MaximalFamily
 from studies.measurement.identify import __main__ as program
-from studies.measurement.identify.displacement import SENSOR, UNITS
-from studies.measurement.identify.estimates import Estimate
-from studies.measurement.identify.fit import fit
-from studies.measurement.identify.profiles import rows_of
-from studies.measurement.identify.records import NoAnswer, read_record, synthetic
-from studies.measurement.identify.starts import predictions_of, repetition
+from studies.measurement.identify.fit.profiles import rows_of
+from studies.measurement.identify.fit.search import fit
+from studies.measurement.identify.motion.displacement import SENSOR, UNITS
+from studies.measurement.identify.motion.starts import predictions_of, repetition
+from studies.measurement.identify.record.records import NoAnswer, read_record, synthetic
+from studies.measurement.identify.report import Estimate
 from studies.measurement.next_measurement import model as next_measurement
 from studies.physics.parameters import ALIASES, fitted_scene, parameters_of, with_values
 from studies.shell.run import Run

@@ -16,16 +16,16 @@ from beam import InvalidValue
 from contact import State, simulate
 from studies.measurement.identify import figure
 from studies.measurement.identify.__main__ import answered
-from studies.measurement.identify.descent import Found
-from studies.measurement.identify.diagnosis import contradictions, defects, drive_found, peaks
-from studies.measurement.identify.fit import _best as best_of
-from studies.measurement.identify.fit import fit
-from studies.measurement.identify.problem import chance_of
-from studies.measurement.identify.profiles import Profile
-from studies.measurement.identify.records import NoAnswer, Record
-from studies.measurement.identify.result import TOO_SMALL
-from studies.measurement.identify.soundness import unit_of
-from studies.measurement.identify.spectrum import harmonics
+from studies.measurement.identify.fit.descent import Found
+from studies.measurement.identify.fit.problem import chance_of
+from studies.measurement.identify.fit.profiles import Profile
+from studies.measurement.identify.fit.result import TOO_SMALL
+from studies.measurement.identify.fit.search import _best as best_of
+from studies.measurement.identify.fit.search import fit
+from studies.measurement.identify.record.records import NoAnswer, Record
+from studies.measurement.identify.record.residuals import contradictions
+from studies.measurement.identify.record.soundness import defects, drive_found, unit_of
+from studies.measurement.identify.record.spectrum import harmonics, peaks
 from studies.physics.parameters import with_values
 from studies.shell.scene import single_mode_at
 
@@ -312,7 +312,7 @@ def test_a_scale_is_found_where_the_gap_or_the_amplitude_is_held(scene_of_eq1, s
 
 def test_a_long_record_is_thinned_and_an_amplitude_ten_times_off_is_said(run_study, tmp_path, monkeypatch):
     """A stuck reading ends with a sentence and exit code 3.  Profiles are left out: they take time."""
-    monkeypatch.setattr("studies.measurement.identify.estimates.traded", lambda found, quick: [])
+    monkeypatch.setattr("studies.measurement.identify.report.traded", lambda found, quick: [])
     record, amplitude = measured(1e-3, rows=48_000, rate=4000.0)
     noted = replace(record, amplitude=10.0 * amplitude)
     (tmp_path / "a.csv").write_text(noted.text())

@@ -12,8 +12,8 @@ from record_information import judged_by_information, truth_of
 from record_simulators import draw
 from record_trials import begun, trial_of
 
-from studies.measurement.identify.fit import fit
-from studies.measurement.identify.records import Record
+from studies.measurement.identify.fit.search import fit
+from studies.measurement.identify.record.records import Record
 
 QUICK = {"equation_1": (24, 28, 11, 9, 38, 45), "two_modes": (5, 52, 22, 40, 32, 41)}
 """Records of p1 to p6 that determine all parameters and are soon fitted.  The drive is known for even seeds;

@@ -47,8 +47,6 @@ Writes:  parameters.csv and correlations.csv, quality.csv, profile.csv, residual
          letter_orbits.csv, next.png
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
@@ -57,12 +55,12 @@ from typing import Annotated
 
 from beam import InvalidValue, Refusal
 from contact import ImpactOscillator
-from studies.measurement.identify.diagnosis import contradictions, wanders
-from studies.measurement.identify.displacement import SENSOR
-from studies.measurement.identify.estimates import report, without_errors
-from studies.measurement.identify.fit import fit as fitted
-from studies.measurement.identify.records import Kind, NoAnswer, Record, read_record, synthetic
-from studies.measurement.identify.result import Fit
+from studies.measurement.identify.fit.result import Fit
+from studies.measurement.identify.fit.search import fit as fitted
+from studies.measurement.identify.motion.displacement import SENSOR
+from studies.measurement.identify.record.records import Kind, NoAnswer, Record, read_record, synthetic
+from studies.measurement.identify.record.residuals import contradictions, wanders
+from studies.measurement.identify.report import report, without_errors
 from studies.measurement.next_measurement.figure import tabulated
 from studies.measurement.next_measurement.model import EXCESSES, FREQUENCIES_HZ, THIN, Measurement, Plan
 from studies.physics.least_model import least_modes

@@ -1,7 +1,5 @@
 """Each record with its fit, residuals and trade-off."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -9,8 +7,8 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from studies.measurement.identify.profiles import Profile
-from studies.measurement.identify.result import Fit
+from studies.measurement.identify.fit.profiles import Profile
+from studies.measurement.identify.fit.result import Fit
 from studies.physics.parameters import parameters_of
 from studies.shell import plotting
 from studies.shell.digits import minus

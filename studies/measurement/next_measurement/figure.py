@@ -1,7 +1,5 @@
 """Tables and figure of the next measurement: errors over the plane of frequency and excess."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from functools import partial
 from typing import Any

@@ -20,8 +20,6 @@ leaves out places as close to a second impact or a doubling, where J stays finit
 excess. An error beyond the value itself only says that the parameter is not determined.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace

@@ -17,8 +17,6 @@ Writes:  escape.csv (a row an end of an orbit: quantiles of the excess, simulate
          seed (scans-*, where a run that was stopped goes on), and the figure observed
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from functools import partial

@@ -1,7 +1,5 @@
 """Fig. 3 as it would have been measured."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -3,8 +3,6 @@
 The observed hysteresis is the excess at which p_1 is left less that at which p_m is lost.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass

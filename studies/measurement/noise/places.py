@@ -6,8 +6,6 @@ excess.  Noise e_j of the m periods moves the excess by their sum with weights w
 moves the critical coordinate: the left eigenvector of the multiplier 1 times what is left of b_j at the end.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any

@@ -23,8 +23,6 @@ Uhlenbeck process with an absorbing end, second order in the width of cells, exa
 each other.  What ends in the second half of a waiting counts for the next step, as in the scans.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 

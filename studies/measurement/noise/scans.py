@@ -14,8 +14,6 @@ leaves room for the noise.  Whether a scan from above grazing reaches p_m at all
 (`meets`): low in a band Eq. (1) is chaotic there, and can end in p_1 first.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from contextlib import suppress

@@ -4,23 +4,19 @@ Rows of chaos that nearly repeat after m drive periods are next to an unstable o
 (close returns: Auerbach et al., Phys. Rev. Lett. 58 (1987) 2387).  The motion begins with the first flight.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contact import ImpactOscillator
-from studies.measurement.identify.displacement import Displacement
-from studies.measurement.identify.kicks import Search, kicked_motions, poles
-from studies.measurement.identify.linear import Linear, state_of
-from studies.measurement.identify.starts import TRIED, starts_at
+from studies.measurement.identify.motion.displacement import Displacement
+from studies.measurement.identify.motion.linear import Linear, state_of
+from studies.measurement.identify.motion.starts import TRIED, starts_at
+from studies.measurement.identify.record.kicks import Search, kicked_motions, poles
+from studies.measurement.identify.record.records import Array
 from studies.physics.parameters import with_values
-
-Array = NDArray[np.float64]
 
 BELOW, SHORT, EARLY = 0.98, 0.3, 3.0
 """Gaps below which a row is off the stop; drive periods that show a state at least, that are fitted first."""

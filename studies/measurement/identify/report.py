@@ -1,7 +1,5 @@
 """The rows of a fit: estimates with errors and intervals, and the quality of the fit."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import combinations
@@ -10,9 +8,9 @@ from typing import Annotated, Any
 import numpy as np
 
 from studies.measurement.identify import figure
-from studies.measurement.identify.displacement import UNITS
-from studies.measurement.identify.profiles import Profile, rows_of
-from studies.measurement.identify.result import Fit
+from studies.measurement.identify.fit.profiles import Profile, rows_of
+from studies.measurement.identify.fit.result import Fit
+from studies.measurement.identify.motion.displacement import UNITS
 from studies.physics.parameters import parameters_of
 from studies.shell.digits import minus, prefixed, written
 from studies.shell.run import Run

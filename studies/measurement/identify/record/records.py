@@ -7,12 +7,10 @@ that begin with # are skipped, but the first two kinds take their drive from `# 
 of v 2 pi f sigma; of an excess the error in the table or the letter's amplitude stability.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Literal
+from typing import Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -91,7 +89,7 @@ class Record:
         each = [1.0, 2.0 * math.pi * (self.frequency or 1.0)][: self.observed.shape[1]]
         return np.broadcast_to(noise * np.array(each), self.observed.shape)
 
-    def noisy(self, seed: int, noise: float = READ_OUT) -> Record:
+    def noisy(self, seed: int, noise: float = READ_OUT) -> Self:
         """The record with normal noise on what is observed, standard deviations as in `units`."""
         found = replace(self, rows=self.rows.copy())
         random = np.random.default_rng(seed)

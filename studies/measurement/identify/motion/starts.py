@@ -4,31 +4,26 @@ Strobe points: of the orbits p_m of the given oscillator, m the repetition of th
 record's drive; where there is none, or none like the record, parameters and approach speed are fitted
 together, the drive amplitude allowed to be a little off, until one is close.
 
-Displacement: the kicked motion that is most like it (`studies.measurement.identify.kicks`) gives free period,
-decay rate, amplitude, phase, gap, restitution, the offset and the sign of the sensor, and the state at the
-first row. It does not show the stiffness or the delay of a contact: several values are tried.
+Displacement: the kicked motion that is most like it (``record.kicks``) gives free period, decay rate,
+amplitude, phase, gap, restitution, the offset and the sign of the sensor, and the state at the first row. It
+does not show the stiffness or the delay of a contact: several values are tried.
 """
-
-from __future__ import annotations
 
 import math
 from collections.abc import Sequence
 from contextlib import suppress
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
 from beam import Refusal
 from contact import ContactError, ImpactOscillator, SingleImpactOrbit, State, simulate
-from studies.measurement.identify.displacement import SENSOR, Displacement
-from studies.measurement.identify.kicks import Kicked, kicked_motions
-from studies.measurement.identify.predictions import Prediction, Strobes, Transitions, family_of
-from studies.measurement.identify.records import NoAnswer, Record
-from studies.measurement.identify.soundness import require_strobe_units, require_units
+from studies.measurement.identify.motion.displacement import SENSOR, Displacement
+from studies.measurement.identify.motion.predictions import Prediction, Strobes, Transitions, family_of
+from studies.measurement.identify.record.kicks import Kicked, kicked_motions
+from studies.measurement.identify.record.records import Array, NoAnswer, Record
+from studies.measurement.identify.record.soundness import require_strobe_units, require_units
 from studies.physics.parameters import parameters_of, with_values
-
-Array = NDArray[np.float64]
 
 LONGEST = 64
 """Longest period of an orbit that is looked for [drive periods]."""

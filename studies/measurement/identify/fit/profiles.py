@@ -5,23 +5,19 @@ With p held at a value all others are fitted again; chi^2 rises by r^2 in units 
 value moves on by the secant of r.  A refit that has not settled is not believed: a shorter step follows.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated
 
 import numpy as np
-from numpy.typing import NDArray
 
 from beam import Refusal
 from contact import ContactError
-from studies.measurement.identify.predictions import Prediction
-from studies.measurement.identify.problem import SETTLED, Problem, through_any_value
+from studies.measurement.identify.fit.problem import SETTLED, Problem, through_any_value
+from studies.measurement.identify.motion.predictions import Prediction
+from studies.measurement.identify.record.records import Array
 from studies.physics.parameters import with_values
-
-Array = NDArray[np.float64]
 
 REFITS, FEW, NEAR = 16, 30, 0.15
 """Most refits to a side, and the steps of each; distance of the last r from the reach, as a part of it."""

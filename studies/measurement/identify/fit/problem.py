@@ -1,26 +1,22 @@
 """The least-squares problem of a fit: residuals and their derivatives by unknowns without units."""
 
-from __future__ import annotations
-
 import copy
 import math
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import Self
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import stats
 
 from beam import Refusal, SuspiciousValue
 from contact import ContactError, ImpactOscillator
-from studies.measurement.identify.descent import Found, descend
-from studies.measurement.identify.predictions import Prediction
-from studies.measurement.identify.records import NoAnswer
-from studies.measurement.identify.spectrum import count_of, harmonics
+from studies.measurement.identify.fit.descent import Found, descend
+from studies.measurement.identify.motion.predictions import Prediction
+from studies.measurement.identify.record.records import Array, NoAnswer
+from studies.measurement.identify.record.spectrum import count_of, harmonics
 from studies.physics.parameters import parameters_of, with_values
-
-Array = NDArray[np.float64]
 
 MOST = 100
 """Steps of a fit: a dozen are usual, a hundred along a valley of two parameters that trade off."""
@@ -137,7 +133,7 @@ class Problem:
             raise NoAnswer("the motion hangs too sensitively on where it begins")
         return np.vstack([rows * self.slopes(unknowns), np.diag(self.held)])
 
-    def of(self, prediction: Prediction) -> Problem:
+    def of(self, prediction: Prediction) -> Self:
         """The same problem by a prediction that stands elsewhere."""
         found = copy.copy(self)
         found.prediction, found.last = prediction, None

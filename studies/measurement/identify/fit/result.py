@@ -5,26 +5,21 @@
 90 % intervals follow from Student's t for the unknowns of the fit, or from a profile of the likelihood.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import stats
 from scipy.special import expit, logit
 
 from contact import ImpactOscillator
-from studies.measurement.identify.descent import SEEN, Found
-from studies.measurement.identify.displacement import SENSOR
-from studies.measurement.identify.problem import MOST, SETTLED, Problem, chance_of
-from studies.measurement.identify.profiles import Walk
-from studies.measurement.identify.records import NoAnswer, Record, Undetermined
+from studies.measurement.identify.fit.descent import SEEN, Found
+from studies.measurement.identify.fit.problem import MOST, SETTLED, Problem, chance_of
+from studies.measurement.identify.fit.profiles import Walk
+from studies.measurement.identify.motion.displacement import SENSOR
+from studies.measurement.identify.record.records import Array, NoAnswer, Record, Undetermined
 from studies.physics.parameters import parameters_of
-
-Array = NDArray[np.float64]
 
 LEVEL = 0.90
 """Probability of the intervals."""

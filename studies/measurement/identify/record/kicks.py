@@ -14,8 +14,6 @@ most of what is left of the Y_k (matching pursuit: Mallat and Zhang, IEEE Trans.
 is averaged over the whole record.  A contact that lasts a while counts as a kick in its middle.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -24,7 +22,7 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from contact import ImpactOscillator
-from studies.measurement.identify.spectrum import Array, Complex, count_of, drives, harmonics
+from studies.measurement.identify.record.spectrum import Array, Complex, count_of, drives, harmonics
 from studies.physics.parameters import parameters_of, with_values
 
 MOST_KICKS = 6

@@ -5,25 +5,20 @@
 A steady motion has A = 0: it gives the modulus of the response, and so one of T, c and the amplitude.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
 from contact import ImpactOscillator
-from studies.measurement.identify.diagnosis import off_neighbours
-from studies.measurement.identify.displacement import SENSOR, Displacement
-from studies.measurement.identify.kicks import poles
-from studies.measurement.identify.records import NoAnswer, Record
-from studies.measurement.identify.spectrum import peaks, scatter
+from studies.measurement.identify.motion.displacement import SENSOR, Displacement
+from studies.measurement.identify.record.kicks import poles
+from studies.measurement.identify.record.records import Array, NoAnswer, Record
+from studies.measurement.identify.record.soundness import off_neighbours
+from studies.measurement.identify.record.spectrum import peaks, scatter
 from studies.physics.parameters import with_values
-
-Array = NDArray[np.float64]
 
 NAMES, RESPONSE = ("free_period", "decay_rate", "amplitude", "frequency"), 3
 """Parameters that such a motion hangs on; how many of the first do so by the response alone."""

@@ -7,33 +7,28 @@ Where a profile of the likelihood finds a better fit, the search goes on from th
 tried as an orbit; one without impacts as a linear motion; one that does not repeat from its first row on.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from beam import Refusal
 from contact import ContactError, ImpactOscillator
 from studies import letter
-from studies.measurement.identify.descent import Found
-from studies.measurement.identify.diagnosis import added, wanders
-from studies.measurement.identify.linear import Linear
-from studies.measurement.identify.predictions import Prediction
-from studies.measurement.identify.problem import Problem, chance_of
-from studies.measurement.identify.profiles import Point
-from studies.measurement.identify.records import READ_OUT, NoAnswer, Record, Undetermined
-from studies.measurement.identify.result import TOO_SMALL, Fit, determined, judged
-from studies.measurement.identify.soundness import sound
-from studies.measurement.identify.spectrum import repetition
-from studies.measurement.identify.starts import predictions_of
-from studies.measurement.identify.unsteady import unsteady_starts
+from studies.measurement.identify.fit.descent import Found
+from studies.measurement.identify.fit.problem import Problem, chance_of
+from studies.measurement.identify.fit.profiles import Point
+from studies.measurement.identify.fit.result import TOO_SMALL, Fit, determined, judged
+from studies.measurement.identify.motion.linear import Linear
+from studies.measurement.identify.motion.predictions import Prediction
+from studies.measurement.identify.motion.starts import predictions_of
+from studies.measurement.identify.motion.unsteady import unsteady_starts
+from studies.measurement.identify.record.records import READ_OUT, Array, NoAnswer, Record, Undetermined
+from studies.measurement.identify.record.residuals import added, wanders
+from studies.measurement.identify.record.soundness import sound
+from studies.measurement.identify.record.spectrum import repetition
 from studies.physics.parameters import parameters_of, require_names, with_values
-
-Array = NDArray[np.float64]
 
 LEASH = 1.0
 """Prior of the parameters while the beginning of a record is fitted, which need not determine all of them."""

@@ -1,7 +1,5 @@
 """Lines of a record: harmonics of an orbit, possible drive frequencies, and its repetition."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -9,7 +7,8 @@ from numpy.typing import NDArray
 from scipy.fft import next_fast_len, rfft
 from scipy.signal import detrend, find_peaks
 
-Array = NDArray[np.float64]
+from studies.measurement.identify.record.records import Array
+
 Complex = NDArray[np.complex128]
 
 MOST_HARMONICS, LONGEST = 90, 12

@@ -10,16 +10,13 @@ It is taken if |a| is well below |d| and chi^2 falls (M. K. Transtrum and J. P. 
 search ends where a further step would lower chi^2 by less than a given amount, to first order.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from studies.measurement.identify.record.records import Array
 
 AHEAD, BEND = 0.1, 0.75
 """Part h of a step at which it is tried for its bend; largest 2 |a|/|d|."""
