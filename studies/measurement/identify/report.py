@@ -15,12 +15,10 @@ from studies.physics.parameters import parameters_of
 from studies.shell.digits import minus, prefixed, written
 from studies.shell.run import Run
 
-TRADE, NOTABLE, MOST, UNLIKE = 0.95, 0.5, 10, 2.0
-"""Correlations from which on two parameters trade off, and from which on they are shown; how many; ratio of
-a fitted amplitude to a given one that contradicts it (clamped beams: 1.57)."""
-
-SHOWN = ("record", "parameter", "value", "interval", "began", "in_scene")
-"""Columns of the estimates on the terminal."""
+TRADE, NOTABLE = 0.95, 0.5  # correlations from which on two parameters trade off, or are shown
+MOST = 10  # correlations that are shown
+UNLIKE = 2.0  # ratio of a fitted amplitude to a given one that contradicts it; clamped beams: 1.57
+SHOWN = ("record", "parameter", "value", "interval", "began", "in_scene")  # columns on the terminal
 
 
 @dataclass(frozen=True)

@@ -45,18 +45,11 @@ FREQUENCIES_HZ = np.linspace(20.5, 23.6, 63).tolist()
 EXCESSES = sorted({0.0, *(way * STABLE * 2.0 ** (0.5 * k) for k in range(13) for way in (-1, 1))})
 """The plane of frequency and excess."""
 
-THIN = 2, 6
-"""Every so many places of the plane, both ways: the full form, the small one."""
-
-FREQUENCY_HZ = 22.20
-"""The letter's p5: a scene that has it there describes the letter's spring."""
-
-UNSEEN, SPEEDS = 1e-11, (1e-4, 1.0)
-"""Ratio of singular values below which a direction of the parameters is not seen; approach speeds over
-2 pi f gap among which nodes are looked for."""
-
-APART_HZ, ALIKE = 0.3, 0.1
-"""Least distance of two of the best places; by which approach speeds may differ and count as one."""
+THIN = 2, 6  # every so many places of the plane, both ways: the full form, the small one
+UNSEEN = 1e-11  # ratio of singular values below which a direction of the parameters is not seen
+SPEEDS = 1e-4, 1.0  # approach speeds over 2 pi f gap among which nodes are looked for
+APART_HZ = 0.3  # least distance of two of the best places
+ALIKE = 0.1  # part by which approach speeds may differ and count as one
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -33,23 +33,12 @@ from contact.orbits import cloud, strobe_derivatives
 from studies.measurement.noise.places import Place
 from studies.measurement.noise.scans import Protocol
 
-LAG = 1.85
-"""Minus the mean y at which eta' = y - eta^2 leaves, from far above: simulated, good to 0.003."""
-
-SLOW = 500.0
-"""Correlation time in drive periods from which on a drift is slow: an orbit passes its fold in a hundred."""
-
-CELLS = 10
-"""Cells of the density in a standard deviation of the drift."""
-
-PHASES = 4
-"""Parts of a step at which a scan begins."""
-
-WIDEST = 6.0
-"""Standard deviations beyond which the drift is left out."""
-
-BELOW = -0.01
-"""Excess at which the motion without impacts is linearised: any below grazing."""
+LAG = 1.85  # minus the mean y at which eta' = y - eta^2 leaves, from far above: simulated, good to 0.003
+SLOW = 500.0  # drive periods of correlation from which on a drift is slow: an orbit passes its fold in 100
+CELLS = 10  # of the density in a standard deviation of the drift
+PHASES = 4  # parts of a step at which a scan begins
+WIDEST = 6.0  # standard deviations beyond which the drift is left out
+BELOW = -0.01  # excess at which the motion without impacts is linearised: any below grazing
 
 Array = NDArray[np.float64]
 Law = tuple[Array, Array]

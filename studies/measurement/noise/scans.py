@@ -29,26 +29,16 @@ from contact.orbits import born
 from studies.measurement.noise.places import Place
 from studies.physics.drive_noise import Drift, DriveNoise, watched
 
-FAR = 6.0
-"""Standard deviations of the noise, beside two steps, from the start of a scan to the end of the orbit."""
-
-BEYOND = 30
-"""Steps beyond the end of an orbit after which a scan is given up: p_m held by noise alone lasts a few."""
-
-RAMP = 0.02
-"""Part of the waiting in which the amplitude goes to its new value: a sudden step would swing over."""
-
-MEETINGS = 10
-"""Scans from the scene's `born_excess` for the share of those that meet p_m."""
-
-ROOM = 3.0
+FAR = 6.0  # standard deviations of the noise, beside two steps, from the start of a scan to the orbit's end
+BEYOND = 30  # steps beyond the end of an orbit at most: p_m held by noise alone lasts a few
+RAMP = 0.02  # part of the waiting in which the amplitude goes to its new value, without overshoot
+MEETINGS = 10  # scans from the scene's `born_excess` for the share of them that meets p_m
+MARGIN = 3.0
 """Standard deviations of the noise above the start of a scan at which p_m must still be: in the low half of a
 band Eq. (1) has it in a window above its fold only, up to the graze of another touch, at the end of the band
 too narrow to hold it in noise."""
-
-RATIO, FEWEST = 20.0, 1000
-"""Largest ratio of noise and step; least number of drive periods waited: long against `QUIET`."""
-
+RATIO = 20.0  # of noise and step, or of step and noise, at most
+FEWEST = 1000  # drive periods waited: long against `QUIET`
 EPS = 1e-9
 
 Array = NDArray[np.float64]
@@ -173,7 +163,7 @@ def start_of(place: Place, protocol: Protocol) -> tuple[float, Any] | None:
     if place.fold is None:
         return None
     excess = place.fold.excess + protocol.reach
-    if place.stable(excess + ROOM * protocol.stability) is None:
+    if place.stable(excess + MARGIN * protocol.stability) is None:
         return None
     state = place.stable(excess)
     return None if state is None else (excess, state)

@@ -18,18 +18,11 @@ import numpy as np
 
 from studies.measurement.identify.record.records import Array
 
-AHEAD, BEND = 0.1, 0.75
-"""Part h of a step at which it is tried for its bend; largest 2 |a|/|d|."""
-
-DAMPING, LESS, MORE, STUCK = 1e-3, 0.2, 3.0, 1e12
-"""The damping at first, its factors after a step that is taken and one that is not, and where no step is
-short enough."""
-
-SEEN = 1e-8
-"""Ratio of singular values below which the residuals do not depend on a direction of the unknowns."""
-
-INSIDE = 1e-9
-"""Part of a unit by which a bounded unknown stays off its bound."""
+AHEAD, BEND = 0.1, 0.75  # part h of a step at which it is tried for its bend; largest 2 |a|/|d|
+DAMPING, LESS, MORE = 1e-3, 0.2, 3.0  # at first; factors after a step that is taken and one that is not
+STUCK = 1e12  # damping where no step is short enough
+SEEN = 1e-8  # ratio of singular values below which residuals do not depend on a direction
+INSIDE = 1e-9  # part of a unit by which a bounded unknown stays off its bound
 
 
 @dataclass(frozen=True, eq=False)

@@ -18,27 +18,15 @@ from studies.measurement.identify.record.records import Array, NoAnswer
 from studies.measurement.identify.record.spectrum import count_of, harmonics
 from studies.physics.parameters import parameters_of, with_values
 
-MOST = 100
-"""Steps of a fit: a dozen are usual, a hundred along a valley of two parameters that trade off."""
-
-GAIN = 1e-3
-"""A fit ends where a step lowers chi^2 by less than this times the noise's variance: 0.03 standard errors."""
-
-SETTLED = 0.1
-"""Fall of chi^2 that may be left to a further step, in units of the noise's variance: a third of an error."""
-
-
+MOST = 100  # steps of a fit: a dozen are usual, a hundred along a valley of two parameters that trade off
+GAIN = 1e-3  # fall of chi^2 at which a fit ends, in the noise's variance: 0.03 standard errors
+SETTLED = 0.1  # fall of chi^2 that may be left to a further step, in the noise's variance
 RANGES = {"decay_rate": (0.0, math.inf), "restitution": (0.0, 1.0)}
 """The parameters that may come close to an end of their range; there a logarithm would have no end."""
-
 FARTHEST = {"free_period": 2.0, "frequency": 2.0}
 """Logarithm by which a search may leave where it begins: a motion of endless oscillations takes for ever."""
-
-LAGS = 10
-"""Number of lags in the autocorrelation of residuals."""
-
-TINY = 1e-300
-"""Least ratio of a value to where it starts: a step along a tangent may round to zero."""
+LAGS = 10  # of the autocorrelation of residuals
+TINY = 1e-300  # least ratio of a value to where it starts: a step along a tangent may round to zero
 
 
 @contextmanager

@@ -19,23 +19,16 @@ from studies.measurement.identify.motion.predictions import Prediction
 from studies.measurement.identify.record.records import Array
 from studies.physics.parameters import with_values
 
-REFITS, FEW, NEAR = 16, 30, 0.15
-"""Most refits to a side, and the steps of each; distance of the last r from the reach, as a part of it."""
-
-GROW, SHRINK, WILD = 4.0, 0.3, 1e4
-"""Longest step over the last one; what follows a step that fails; rise of chi^2 where no refit begins."""
-
-FARTHEST = 50.0
-"""Logarithm by which a step along a tangent moves a value at most."""
-
-FAR = 0.25
-"""Part of the reach from which on a walk that comes to a halt is continued by a line."""
-
-BENT = 0.2
-"""A parameter has a profile where chi^2 a reach away differs by this part from what (J^T J)^-1 says."""
+REFITS, FEW = 16, 30  # most refits to a side, and the steps of each
+NEAR = 0.15  # distance of the last r from the reach, as a part of it
+GROW, SHRINK = 4.0, 0.3  # longest step over the last one; what follows a step that fails
+WILD = 1e4  # rise of chi^2 where no refit begins
+FARTHEST = 50.0  # logarithm by which a step along a tangent moves a value at most
+FAR = 0.25  # part of the reach from which on a walk that comes to a halt is continued by a line
+BENT = 0.2  # part by which chi^2 a reach away differs from what (J^T J)^-1 says, if there is a profile
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Profile:
     """One point of a profile likelihood: a parameter is held, all others are fitted again."""
 
@@ -182,13 +175,6 @@ class Walk:
 def rows_of(walk: Walk, points: Sequence[Point], other: str) -> list[Profile]:
     """The points of a walk, the parameter rising."""
     k = walk.problem.names.index(other)
-    return [
-        Profile(
-            parameter=walk.name,
-            value=float(point.values[walk.i]),
-            other=other,
-            other_value=float(point.values[k]),
-            depth=point.rise,
-        )
-        for point in sorted([walk.best, *points], key=lambda point: point.away)
-    ]
+    points = sorted([walk.best, *points], key=lambda point: point.away)
+    rows = [(float(point.values[walk.i]), float(point.values[k]), point.rise) for point in points]
+    return [Profile(walk.name, value, other, fitted, rise) for value, fitted, rise in rows]

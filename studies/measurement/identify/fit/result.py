@@ -21,21 +21,14 @@ from studies.measurement.identify.motion.displacement import SENSOR
 from studies.measurement.identify.record.records import Array, NoAnswer, Record, Undetermined
 from studies.physics.parameters import parameters_of
 
-LEVEL = 0.90
-"""Probability of the intervals."""
-
-TOO_SMALL = 1e-3
-"""Probability of such residuals from noise alone, below which the model is called too small."""
-
-OPEN = ("stiffness",)
-"""What may have no end: a record may only show that a stop is harder, or softer, than a bound."""
-
+LEVEL = 0.90  # probability of the intervals
+TOO_SMALL = 1e-3  # probability of such residuals from noise alone, below which the model is too small
+OPEN = ("stiffness",)  # may have no end: a record may only show that a stop is harder than a bound
 SIZES = {"restitution": 0.5, "phase": 1.0, "offset": math.inf}
 """Least size of a number that an error is compared with: some may be zero."""
-
-PART, LOST, LONGEST = 0.3, 2.0, 300.0
-"""Part of the largest from which a parameter takes part in a direction that is not determined; standard error
-of a logarithm above which its parameter is not determined; logarithm of the longest interval."""
+PART = 0.3  # of the largest, from which a parameter takes part in a direction that is not determined
+LOST = 2.0  # standard error of a logarithm above which its parameter is not determined
+LONGEST = 300.0  # logarithm of the longest interval
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

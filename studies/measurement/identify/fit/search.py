@@ -30,25 +30,15 @@ from studies.measurement.identify.record.soundness import sound
 from studies.measurement.identify.record.spectrum import repetition
 from studies.physics.parameters import parameters_of, require_names, with_values
 
-LEASH = 1.0
-"""Prior of the parameters while the beginning of a record is fitted, which need not determine all of them."""
-
-EARLY, ROUGH, FINISHED, SAME, ASTRAY = 40, 1e-3, 3, 3e-3, 9.0
-"""Most steps from each start, until chi^2 falls by no more than this part; how many are fitted to the end
-(twice as many if none is like the record); relative difference of values that are the same; growth of chi^2
-by row at which the fit of more and more rows is given up."""
-
-SHORT = 20.0
-"""Drive periods of a motion that are fitted where more are not: chaos forgets its start."""
-
-LOST = 30.0
-"""Error of a parameter over its value at which the record does not depend on it: no profile shows more."""
-
-TONE = 0.7
-"""Part of what does not repeat that a hum must have to be the reason why there is no fit."""
-
-AGAIN, BETTER = 4, 0.2
-"""How often a fit begins again at a better point of a profile, and by how much chi^2 is less there."""
+LEASH = 1.0  # prior of the parameters while few rows are fitted, which need not determine all of them
+EARLY, ROUGH = 40, 1e-3  # most steps from each start, until chi^2 falls by no more than this part
+FINISHED = 3  # starts that are fitted to the end; more if none is like the record
+SAME = 3e-3  # relative difference of values that are the same
+ASTRAY = 9.0  # growth of chi^2 by row at which the fit of more and more rows is given up
+SHORT = 20.0  # drive periods of a motion that are fitted where more are not: chaos forgets its start
+LOST = 30.0  # error of a parameter over its value at which no profile shows more
+TONE = 0.7  # part of what does not repeat that a hum must have to be the reason why there is no fit
+AGAIN, BETTER = 4, 0.2  # fits begun at a better point of a profile; by how much chi^2 is less there
 
 
 def fit(
@@ -149,11 +139,7 @@ def _walked(found: Fit) -> tuple[dict[str, tuple[float, float]], Point | None]:
         walk = found.walk(name)
         if walk.bent(found.reach):
             sides = [walk.side(way * found.reach) for way in (-1.0, 1.0)]
-            lowest = min(
-                (point for points, _ in sides for point in points),
-                key=lambda one: one.rise,
-                default=walk.best,
-            )
+            lowest = min([*sides[0][0], *sides[1][0], walk.best], key=lambda point: point.rise)
             if lowest.rise < -BETTER:
                 return walks, lowest
             walks[name] = sides[0][1], sides[1][1]

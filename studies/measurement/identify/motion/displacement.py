@@ -39,19 +39,12 @@ from studies.measurement.identify.motion.predictions import Prediction, shapes_c
 from studies.measurement.identify.record.records import Array, NoAnswer, Record
 from studies.physics.parameters import changes_of, parameters_of
 
-PRIOR = 0.01
-"""Standard deviation of a mode beyond the first at the start of a record, in gaps at the tip."""
-
-CLOSED, STEPS = 1e-10, 12
-"""Last step of Newton's method on an orbit, in gaps at the tip, and the most steps; four are usual."""
-
-FAR, SLOW = 1.0, 0.3
-"""A step of Newton's method that leads nowhere, in gaps at the tip; least gain by a step with derivatives of
-another orbit."""
-
-FEW, GROWTH = 1500, 1.2
-"""Rows with which a search begins; factor by which the rows of a motion that does not repeat grow: in chaos a
-larger one leads to local optima."""
+PRIOR = 0.01  # standard deviation of a mode beyond the first at the start of a record, in gaps at the tip
+CLOSED, STEPS = 1e-10, 12  # last step of Newton's method on an orbit, in gaps at the tip; most steps
+FAR = 1.0  # a step of Newton's method that leads nowhere, in gaps at the tip
+SLOW = 0.3  # least gain by a step with the derivatives of another orbit
+FEW = 1500  # rows with which a search begins
+GROWTH = 1.2  # of the rows of a motion that does not repeat; in chaos more leads to local optima
 
 SENSOR: Mapping[str, float] = {"phase": 0.0, "offset": 0.0, "scale": 1.0}
 """The numbers of a sensor, each with its value where it is not fitted: the phase of the drive at time zero

@@ -20,18 +20,14 @@ from studies.measurement.identify.record.soundness import off_neighbours
 from studies.measurement.identify.record.spectrum import peaks, scatter
 from studies.physics.parameters import with_values
 
-NAMES, RESPONSE = ("free_period", "decay_rate", "amplitude", "frequency"), 3
-"""Parameters that such a motion hangs on; how many of the first do so by the response alone."""
-
-LOGS = -3.0, 3.0
-"""Logarithms by which f, T and c may leave where a search begins."""
-
-FREE, DECAYS, AWAY = np.geomspace(0.5, 2.0, 40), (0.03, 0.1, 0.3), 1e3
-"""Free periods and decay rates that a search begins with, by the drive period; gap by the largest reading."""
-
-SEEN, NOISE, LASTS = 40.0, 2.0, 0.05
-"""Fall of chi^2 by which a free mode is seen, or this motion is better than an orbit; what it may leave over
-the noise between neighbouring rows; decay rate times span of a line that does not decay."""
+NAMES = ("free_period", "decay_rate", "amplitude", "frequency")  # all that such a motion depends on
+RESPONSE = 3  # how many of the first enter by the response alone
+LOGS = -3.0, 3.0  # logarithms by which f, T and c may leave where a search begins
+FREE, DECAYS = np.geomspace(0.5, 2.0, 40), (0.03, 0.1, 0.3)  # first T and c, in drive periods and per period
+AWAY = 1e3  # gap over the largest reading
+SEEN = 40.0  # fall of chi^2 by which a free mode is seen, or this motion is better than an orbit
+NOISE = 2.0  # what this motion may leave over the noise between neighbouring rows
+LASTS = 0.05  # decay rate times span of a line that does not decay
 
 
 class Linear:

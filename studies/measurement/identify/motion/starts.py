@@ -25,39 +25,19 @@ from studies.measurement.identify.record.records import Array, NoAnswer, Record
 from studies.measurement.identify.record.soundness import require_strobe_units, require_units
 from studies.physics.parameters import parameters_of, with_values
 
-LONGEST = 64
-"""Longest period of an orbit that is looked for [drive periods]."""
-
-ALIKE = 3.0
-"""A record repeats after m rows if rows m apart differ by no more than this times the least difference."""
-
-FLAT = 1e-3
-"""Scatter over size of strobe points that are one and the same."""
-
-CLOSE = 0.01
-"""A start whose residuals are below this part of the record's own size needs no search."""
-
-SIMILAR, TRIED, WORSE = 0.1, 6, 30.0
-"""The same at which a search has failed; starts that are searched from; least chi^2 of a kicked motion over
-that of the best at which it is left out."""
-
-SPEEDS = np.geomspace(0.01, 0.5, 12)
-"""Approach speeds that a search begins with, in units of 2 pi f gap."""
-
-SEEN = 40.0
-"""By how much kicks must lower chi^2 of the harmonics: noise alone gives 25 once in a thousand records."""
-
-FACTORS = (0.1, 10.0, 0.3, 3.0, 0.03, 30.0)
-"""Values of what a kick does not tell of a contact, over the given one."""
-
-RESTITUTIONS = (0.1, 0.3, 0.6, 0.9)
-"""Restitutions that are tried beside the ones of the record and the scene."""
-
+LONGEST = 64  # period of an orbit that is looked for [drive periods]
+ALIKE = 3.0  # a record repeats after m rows if their difference is below this times the least one
+FLAT = 1e-3  # scatter over size of strobe points that are one and the same
+CLOSE = 0.01  # part of the record's size below which residuals of a start need no search
+SIMILAR = 0.1  # the same above which a search has failed
+SPEEDS = np.geomspace(0.01, 0.5, 12)  # approach speeds of first orbits, in units of 2 pi f gap
+SEEN = 40.0  # fall of chi^2 by kicks: noise alone gives 25 once in a thousand records
+TRIED, WORSE = 6, 30.0  # kicked motions that are tried; ratio of chi^2 to the best one's at most
+FACTORS = (0.1, 10.0, 0.3, 3.0, 0.03, 30.0)  # on numbers of a contact that no kick shows
+RESTITUTIONS = (0.1, 0.3, 0.6, 0.9)  # tried beside the ones of the record and the scene
 ASIDE = (0.97, 0.99, 0.997, 0.999, 1.001, 1.003, 1.01, 1.03)
 """Factors of gap or amplitude that are tried where no orbit closes: near its fold it may lack by little."""
-
-LOOKED = 200
-"""Times of an orbit at which the tip may be farthest from the stop, where its state begins."""
+LOOKED = 200  # times of an orbit at which the tip may be farthest from the stop, where its state begins
 
 
 def predictions_of(

@@ -18,11 +18,10 @@ from studies.measurement.identify.record.kicks import Search, kicked_motions, po
 from studies.measurement.identify.record.records import Array
 from studies.physics.parameters import with_values
 
-BELOW, SHORT, EARLY = 0.98, 0.3, 3.0
-"""Gaps below which a row is off the stop; drive periods that show a state at least, that are fitted first."""
-
-FINE, LONGEST_RETURN = 64, 9
-"""Rows a drive period, and drive periods, between which a record is compared with itself."""
+BELOW = 0.98  # gaps below which a row is off the stop
+SHORT, EARLY = 0.3, 3.0  # drive periods that show a state at least, and that are fitted first
+FINE = 64  # rows a drive period at which a record is compared with itself
+LONGEST_RETURN = 9  # drive periods after which it may nearly repeat
 
 
 def unsteady_starts(

@@ -25,20 +25,16 @@ from contact import ImpactOscillator
 from studies.measurement.identify.record.spectrum import Array, Complex, count_of, drives, harmonics
 from studies.physics.parameters import parameters_of, with_values
 
-MOST_KICKS = 6
-"""Kicks of an orbit that are looked for at most."""
-
+MOST_KICKS = 6  # of an orbit
 FREE_PERIODS, DECAY_RATES = np.geomspace(0.6, 1.4, 16), np.array([0.03, 0.1, 0.3, 0.7])
 """Where a search begins, in drive periods and per drive period."""
-STARTS, WORTH, LITTLE, APART = 5, 12.0, 0.7, 0.04
-"""First kicks that are followed; what a further kick must take off chi^2, and the part that it may leave if
-another is to follow; drive periods between two kicks."""
-
-VALLEY, LIKE = 50.0, 4
-"""By how much chi^2 of another free period may be above the best; how many others are kept."""
+STARTS = 5  # first kicks that are followed
+WORTH, LITTLE = 12.0, 0.7  # what a further kick takes off chi^2; the part that it may leave if one follows
+APART = 0.04  # drive periods between two kicks
+VALLEY, LIKE = 50.0, 4  # chi^2 of other free periods above the best; how many are kept
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Kicked:
     """A kicked motion: the `oscillator` with its free period, decay rate and drive frequency as fitted.
 
@@ -218,16 +214,11 @@ class Search:
         waves, (period, rate) = self.waves(self.response(logs), kicks), np.exp(logs).tolist()
         impulses = self.impulses(waves)
         rest = self.seen - waves @ impulses
-        return Kicked(
-            oscillator=with_values(self.oscillator, {"free_period": period, "decay_rate": rate}),
-            period=self.period,
-            kicks=kicks % (1.0 / self.pace),
-            impulses=impulses,
-            steady=complex(rest[self.period]),
-            offset=float(rest[0].real),
-            cost=cost,
-            without=float(np.sum(np.abs(self.seen[self.used]) ** 2)) / self.error**2,
-        )
+        steady, offset = complex(rest[self.period]), float(rest[0].real)
+        without = float(np.sum(np.abs(self.seen[self.used]) ** 2)) / self.error**2
+        at = with_values(self.oscillator, {"free_period": period, "decay_rate": rate})
+        kicks = kicks % (1.0 / self.pace)
+        return Kicked(at, self.period, kicks, impulses, steady, offset, cost, without)
 
 
 def kicked_motions(

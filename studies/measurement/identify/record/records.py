@@ -23,9 +23,7 @@ from studies import letter
 Array = NDArray[np.float64]
 Kind = Literal["strobe", "displacement", "transitions"]
 
-READ_OUT = 0.5e-6
-"""Noise of the read-out of synthetic records, and the default unit of residuals [m]."""
-
+READ_OUT = 0.5e-6  # noise of the read-out of synthetic records, and the default unit of residuals [m]
 HEADINGS: dict[tuple[str, ...], Kind] = {
     ("x_m",): "strobe",
     ("x_m", "v_m_per_s"): "strobe",
@@ -34,13 +32,9 @@ HEADINGS: dict[tuple[str, ...], Kind] = {
     ("frequency_hz", "period", "excess", "error"): "transitions",
 }
 NOTES = ("frequency_hz", "amplitude_m")
-
-FEWEST = {"strobe": 4, "displacement": 40, "transitions": 1}
-"""Rows that each kind needs: strobes, rows, transitions."""
-
-LARGEST, LATEST, FAR = 1e6, 1e15, 100.0
-"""Largest size of a number, in the unit of its column, and of a time [s]; first stamp over the span of the
-record above which times begin at the first row."""
+FEWEST = {"strobe": 4, "displacement": 40, "transitions": 1}  # rows that each kind needs
+LARGEST, LATEST = 1e6, 1e15  # largest size of a number, in the unit of its column, and of a time [s]
+FAR = 100.0  # first stamp over the span of the record, above which times begin at the first row
 
 
 class NoAnswer(ContactError):

@@ -11,18 +11,13 @@ from studies.measurement.identify.record.records import Array
 
 Complex = NDArray[np.complex128]
 
-MOST_HARMONICS, LONGEST = 90, 12
-"""Harmonics of an orbit and its drive periods at most."""
-
-SAME, NEAR = 1.3, 3e-3
-"""An orbit leaves at most so much of the least scatter; part by which a given drive frequency may be off."""
-
-LINES, DRIVES, HIGH, ENOUGH = 6, 4, 0.05, 1500
-"""Lines of the spectrum that give an orbit, harmonics of it that may be the drive, their least part of the
-highest; rows that show whether a record repeats."""
-
-ROUND = 1e-11
-"""Part by which the diagonal of normal equations is raised: harmonics that the rows do not show are small."""
+MOST_HARMONICS, LONGEST = 90, 12  # harmonics of an orbit and its drive periods at most
+SAME = 1.3  # an orbit leaves at most so much of the least scatter
+NEAR = 3e-3  # part by which a given drive frequency may be off
+LINES, DRIVES = 6, 4  # lines of the spectrum that give an orbit; harmonics of it that may be the drive
+HIGH = 0.05  # least part of the highest harmonic that one of the drive has
+ENOUGH = 1500  # rows that show whether a record repeats
+ROUND = 1e-11  # relative addition to the diagonal of normal equations: unseen harmonics are small
 
 
 def peaks(times: Array, values: Array) -> tuple[Array, Array]:
