@@ -1,7 +1,5 @@
 """Records of laboratories, by simulators that know nothing of the fit: starts are found, truth comes out."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

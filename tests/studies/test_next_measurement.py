@@ -1,7 +1,5 @@
 """The next measurement: information, its limits and its answer, each by a second route."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -86,7 +84,7 @@ def test_the_errors_are_the_spread_of_fits(records):
     assert np.abs(np.mean(found, axis=0) / errors).max() < 3.0 / math.sqrt(records)
 
 
-def test_one_orbit_does_not_tell_gap_restitution_and_delay_apart():
+def test_one_orbit_does_not_separate_gap_restitution_and_delay():
     """However much is read; with the gap from the amplitude at grazing, or with a second orbit, it does."""
     three = Plan(names=("gap", "restitution", "delay"), before={})
     for f, m in ((20.90, 3), (21.50, 4), (22.60, 6)):

@@ -1,7 +1,5 @@
 """Noise of the drive: scans as an observer makes them, and the formulas for them."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
@@ -85,13 +83,13 @@ def test_scans_depend_on_seed_and_place_alone(place):
         assert name == "met" or not np.array_equal(values, other[name])
 
 
-def test_where_there_is_no_fold_or_no_room_above_it_nothing_is_lost(letter_scene, place):
+def test_where_there_is_no_fold_or_no_space_above_it_nothing_is_lost(letter_scene, place):
     above = place(3, band_of(letter_scene, 3).upper + 0.05)
     assert above.fold is None and start_of(above, DRIFT) is None
     narrow = place(5, 21.8327)  # p5 touches the stop a second time 6e-4 above its fold
     assert narrow.stable(narrow.fold.excess + 5e-4) and not narrow.stable(narrow.fold.excess + 7e-4)
     assert start_of(narrow, DRIFT) is None and start_of(place(5, 21.9325), DRIFT)
-    # chaos above grazing ends in p1 before it comes to p4, which lives from -0.045 to -0.040
+    # chaos above grazing ends in p1 before it comes to p4, which exists from -0.045 to -0.040
     assert not scans(place(4, 21.2475), DRIFT, 3, 1)["met"].any()
     assert scans(place(4, 21.3455), DRIFT, 3, 1)["met"].all()
     found = scans(above, Protocol(step=SIGMA, waiting=1000, stability=SIGMA), 2, 1)

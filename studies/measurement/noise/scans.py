@@ -10,7 +10,7 @@ half of them lie in stretches without impact longer than `QUIET` periods.
 
 Below its fold the motion can be thrown back to p_m many times before it is lost.  A scan begins at a random
 part of a step, so that results do not lie on a grid; downwards it begins on p_m next to its fold, where this
-leaves room for the noise.  Whether a scan from above grazing reaches p_m at all is a question of its own
+leaves space for the noise.  Whether a scan from above grazing reaches p_m at all is a question of its own
 (`meets`): low in a band Eq. (1) is chaotic there, and can end in p_1 first.
 """
 
@@ -27,7 +27,7 @@ from beam import InvalidValue
 from contact import ContactError
 from contact.orbits import born
 from studies.measurement.noise.places import Place
-from studies.physics.drive_noise import Drift, DriveNoise, watched
+from studies.physics.drive_noise import Array, Drift, DriveNoise, watched
 
 FAR = 6.0  # standard deviations of the noise, beside two steps, from the start of a scan to the orbit's end
 BEYOND = 30  # steps beyond the end of an orbit at most: p_m held by noise alone lasts a few
@@ -41,7 +41,6 @@ RATIO = 20.0  # of noise and step, or of step and noise, at most
 FEWEST = 1000  # drive periods waited: long against `QUIET`
 EPS = 1e-9
 
-Array = NDArray[np.float64]
 ENDS = ("slipped", "lost", "touched", "left")
 """Ends that are noted: of p_m downwards, of p_1 upwards."""
 
@@ -74,10 +73,8 @@ class Protocol(DriveNoise):
     def __post_init__(self) -> None:
         low, high = self.stability / RATIO, self.stability * RATIO
         if not low * (1.0 - EPS) <= self.step <= high * (1.0 + EPS):
-            raise InvalidValue(
-                f"amplitude_step is {self.step:g} [1]; with a stability of {self.stability:g} it must lie "
-                f"between {low:g} and {high:g}"
-            )
+            valid = f"with a stability of {self.stability:g} it must lie between {low:g} and {high:g}"
+            raise InvalidValue(f"amplitude_step is {self.step:g} [1]; {valid}")
 
 
 def waitings(
@@ -136,10 +133,8 @@ def scans(place: Place, protocol: Protocol, count: int, seed: int) -> dict[str, 
         return protocol.drift(place.frequency_hz, dice), dice.random()
 
     below = place.strobed.at(-protocol.reach).steady()
-    ways = (
-        (start_of(place, protocol), -protocol.step, place.m),
-        ((-protocol.reach, below), protocol.step, 0),
-    )
+    down = start_of(place, protocol), -protocol.step, place.m
+    ways = down, ((-protocol.reach, below), protocol.step, 0)
     found = np.full((len(ways), 2, count), math.nan)
     for way, (start, step, m) in enumerate(ways):
         if start is None:

@@ -45,25 +45,24 @@ def descend(
     jacobian: Callable[[Array], Array],
     start: Array,
     bounds: Array,
-    *,
     most: int,
-    enough: Callable[[float], float],
+    enough: float,
 ) -> Found:
     """The least sum of squares from `start`, in `most` steps, between `bounds` of shape (2, n).
 
-    Residuals that are not finite reject a step.  `enough` is the fall of chi^2 at which the search ends, from
-    chi^2.
+    Residuals that are not finite reject a step.  The search ends where chi^2 would fall by less than the part
+    `enough` of it.
     """
     low, high = bounds[0] + INSIDE, bounds[1] - INSIDE
     u = np.clip(start, low, high)
     r, damping, scale = residuals(u), DAMPING, np.zeros(u.size)
     j = jacobian(u)
-    for _ in range(most):
+    for count in range(most + 1):
         downhill = -(j.T @ r)
         free = ~(((u <= low) & (downhill < 0.0)) | ((u >= high) & (downhill > 0.0)))
         q, triangle = np.linalg.qr(j[:, free])
         left = _left(triangle, q.T @ r)
-        if left < enough(float(r @ r)):
+        if left < enough * float(r @ r) or count == most:
             break
         scale = np.maximum(scale, np.linalg.norm(j, axis=0))
         taken = None
@@ -90,9 +89,6 @@ def descend(
             break
         (u, r), damping = taken, damping * LESS
         j = jacobian(u)
-    else:
-        q, triangle = np.linalg.qr(j)
-        left = _left(triangle, q.T @ r)
     return Found(u, r, j, left)
 
 

@@ -32,8 +32,7 @@ TINY = 1e-300  # least ratio of a value to where it starts: a step along a tange
 @contextmanager
 def through_any_value() -> Iterator[None]:
     """No warnings of suspicious values, as a search may pass through any."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", SuspiciousValue)
+    with warnings.catch_warnings(action="ignore", category=SuspiciousValue):
         yield
 
 
@@ -61,10 +60,9 @@ class Problem:
         self.log[[i for i, name in enumerate(names) if name in RANGES]] = False
         self.sizes[self.log] = values[self.log]
         self.start = self.unknowns_of(values)
-        ends = [FARTHEST.get(name, math.inf) for name in names]
-        self.farthest = np.append(ends, np.full(prediction.sizes.size, math.inf))
-        ranges = [RANGES.get(name, (-math.inf, math.inf)) for name in names]
-        ranges += [(-math.inf, math.inf)] * prediction.sizes.size
+        everything = [*names, *[""] * prediction.sizes.size]
+        self.farthest = np.array([FARTHEST.get(name, math.inf) for name in everything])
+        ranges = [RANGES.get(name, (-math.inf, math.inf)) for name in everything]
         self.bounds = np.array(ranges).T / self.sizes
         self.weights = 1.0 / prediction.record.units(noise).ravel()
         self.observed = prediction.record.observed.ravel()
@@ -118,7 +116,7 @@ class Problem:
         """Shape (rows + unknowns, unknowns); NoAnswer if it is not finite."""
         rows = self.prediction.jacobian(*self.at(unknowns), self.names) * self.weights[:, None]
         if not np.all(np.isfinite(rows)):
-            raise NoAnswer("the motion hangs too sensitively on where it begins")
+            raise NoAnswer("the motion depends too sensitively on its start")
         return np.vstack([rows * self.slopes(unknowns), np.diag(self.held)])
 
     def of(self, prediction: Prediction) -> Self:
@@ -132,14 +130,7 @@ class Problem:
         `gain` times the noise's variance."""
         if not np.all(np.isfinite(self.residuals(start))):
             raise NoAnswer("no motion like the record's was found to start from")
-        return descend(
-            self.residuals,
-            self.jacobian,
-            start,
-            self.bounds,
-            most=most,
-            enough=lambda chi2: gain * chi2 / self.freedom,
-        )
+        return descend(self.residuals, self.jacobian, start, self.bounds, most, gain / self.freedom)
 
 
 def chance_of(problem: Problem, solved: Found, known: bool) -> float:
@@ -160,8 +151,8 @@ def chance_of(problem: Problem, solved: Found, known: bool) -> float:
         found.append(float(stats.chi2.sf(box, LAGS)))
         if period:
             times = prediction.record.rows[:, 0]
-            pace = problem.at(solved.x)[0].driven.frequency / period
-            lines, scatter = harmonics(times, residuals, pace, count_of(times, pace))
+            base = problem.at(solved.x)[0].driven.frequency / period
+            lines, scatter = harmonics(times, residuals, base, count_of(times, base))
             more = 2 * lines.size - 1 - problem.unknowns
             within = scatter**2 * (size - 2 * lines.size + 1)
             found += _beyond(float(residuals @ residuals), within, more, freedom)

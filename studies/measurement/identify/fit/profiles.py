@@ -14,7 +14,7 @@ import numpy as np
 
 from beam import Refusal
 from contact import ContactError
-from studies.measurement.identify.fit.problem import SETTLED, Problem, through_any_value
+from studies.measurement.identify.fit.problem import RANGES, SETTLED, Problem, through_any_value
 from studies.measurement.identify.motion.predictions import Prediction
 from studies.measurement.identify.record.records import Array
 from studies.physics.parameters import with_values
@@ -76,12 +76,8 @@ class Walk:
         sizes[sizes == 0.0] = 1.0
         others = np.delete(rows / sizes, self.i, axis=1)
         follow = np.linalg.lstsq(others, -rows[:, self.i], rcond=None)[0] / np.delete(sizes, self.i)
-        each = values[self.i] / self.best.values[self.i] if away and self._log else 1.0
+        each = values[self.i] / self.best.values[self.i] if away and self.problem.log[self.i] else 1.0
         return Point(away, rise, values, np.insert(follow, self.i, 1.0) * self.error * each, prediction)
-
-    @property
-    def _log(self) -> bool:
-        return bool(self.problem.log[self.i])
 
     def moved(self, point: Point, step: float, last: Point | None = None) -> Array:
         """All values so many standard errors on: along a point's direction, on the parabola through the last;
@@ -91,9 +87,8 @@ class Walk:
             back = last.away - point.away
             found += (last.values - point.values - back * point.along) * (step / back) ** 2
             found[self.i] = point.values[self.i] + step * point.along[self.i]
-        found[log] = point.values[log] * np.exp(
-            np.clip(found[log] / point.values[log] - 1.0, -FARTHEST, FARTHEST)
-        )
+        part = np.clip(found[log] / point.values[log] - 1.0, -FARTHEST, FARTHEST)
+        found[log] = point.values[log] * np.exp(part)
         others = np.arange(found.size) != self.i
         low, high = self.problem.bounds * self.problem.sizes
         found[others] = np.clip(found, low, high)[others]
@@ -105,9 +100,8 @@ class Walk:
         if not low < values[self.i] < high:
             return math.nan
         problem = self.problem.of(prediction)
-        return (
-            float(np.sum(problem.residuals(problem.unknowns_of(values)) ** 2)) - self.chi2
-        ) / self.variance
+        chi2 = float(np.sum(problem.residuals(problem.unknowns_of(values)) ** 2))
+        return (chi2 - self.chi2) / self.variance
 
     def bent(self, reach: float) -> bool:
         """Whether chi^2 is not the parabola that (J^T J)^-1 says."""
@@ -129,9 +123,8 @@ class Walk:
             if found.left > self.variance * SETTLED:
                 return None
             rise = (found.chi2 - self.chi2) / self.variance
-            return self._point(
-                point.away + step, rise, np.insert(fewer.values(found.x), self.i, value), prediction
-            )
+            whole = np.insert(fewer.values(found.x), self.i, value)
+            return self._point(point.away + step, rise, whole, prediction)
         except (ContactError, Refusal):
             return None
 
@@ -158,18 +151,13 @@ class Walk:
                 step = (high.away - low.away) * min(max(part, 0.1), 0.9)
         if high is None and last is not None and low.r > FAR * most and low.r > last.r:
             low, high = last, low  # the walk has come to a halt: the line through its last two points
-        return points, self._edge(reach) if high is None else self._end(low, high, most)
+        edge = RANGES.get(self.name, (0.0, math.inf))[reach > 0.0]  # no r inside it is as large as the reach
+        return points, edge if high is None else self._end(low, high, most)
 
     def _end(self, low: Point, high: Point, reach: float) -> float:
         """Where r is the reach, by the line through two points."""
         ends = low.values[self.i], high.values[self.i]
         return float(ends[0] + (ends[1] - ends[0]) * (reach - low.r) / (high.r - low.r))
-
-    def _edge(self, reach: float) -> float:
-        """Where the parameter ends; no r within the physical range is as large as the reach."""
-        if self.name == "restitution":
-            return 0.0 if reach < 0.0 else 1.0
-        return math.inf if reach > 0.0 else 0.0
 
 
 def rows_of(walk: Walk, points: Sequence[Point], other: str) -> list[Profile]:

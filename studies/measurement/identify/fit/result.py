@@ -35,13 +35,12 @@ LONGEST = 300.0  # logarithm of the longest interval
 class Fit:
     """A fit; arrays by `names`, parameters and then numbers of the sensor, in SI units.
 
-    `before` has the values before the record was looked at, `start` those at the start of the fit.
-
-    `noise`: standard deviation of x [m], or of an excess in units of its error; `freedom`: rows less
-    unknowns; `residuals`: observed less predicted, shape of the record's `observed`; `chance`: probability of
-    residuals of such size or pattern from noise alone; `left`: fall of chi^2 by a further step, in units of
-    the noise's variance; `problem` and `unknowns`: what was solved; `walks`: the intervals of the parameters
-    along which chi^2 is no parabola, by its profile.
+    `before` has the values before the record was looked at, `start` the ones where the fit began.  `noise` is
+    the standard deviation of x [m], or of an excess in units of its error.  `residuals` are observed less
+    predicted, in the shape of the record's `observed`.  `chance` is the probability of residuals of such
+    size or pattern from noise alone, `left` the fall of chi^2 by a further step in the noise's variance.
+    `problem` and `unknowns` are what was solved.  `walks` has the intervals of the parameters along which
+    chi^2 is no parabola, by its profile.
     """
 
     record: Record
@@ -53,7 +52,6 @@ class Fit:
     covariance: Array
     noise: float
     noise_known: bool
-    freedom: int
     residuals: Array
     chance: float
     left: float
@@ -100,7 +98,7 @@ class Fit:
     def reach(self) -> float:
         """Half a 90 % interval in standard errors, by Student's t; the normal law's if noise is known."""
         tail = 0.5 + 0.5 * LEVEL
-        return float(stats.norm.ppf(tail) if self.noise_known else stats.t.ppf(tail, self.freedom))
+        return float(stats.norm.ppf(tail) if self.noise_known else stats.t.ppf(tail, self.problem.freedom))
 
     def intervals(self) -> Array:
         """Lower and upper ends, shape (n, 2), within the physical range.
@@ -148,7 +146,6 @@ def judged(problem: Problem, found: Found, oscillator: ImpactOscillator, known: 
         covariance=covariance,
         noise=spread * problem.noise,
         noise_known=known,
-        freedom=problem.freedom,
         residuals=(-found.fun[:rows] / problem.weights).reshape(prediction.record.observed.shape),
         chance=chance,
         left=found.left / spread**2,
@@ -160,9 +157,8 @@ def judged(problem: Problem, found: Found, oscillator: ImpactOscillator, known: 
 def determined(found: Fit) -> Fit:
     """The fit; NoAnswer if the error of a parameter is above its value, or if it has not settled."""
     sizes = np.array([SIZES.get(name, 0.0) for name in found.names])
-    sizes = np.maximum(np.abs(found.estimate), sizes) * np.where(
-        found.problem.log[found.problem.named], LOST, 1.0
-    )
+    sizes = np.maximum(np.abs(found.estimate), sizes)
+    sizes[found.problem.log[found.problem.named]] *= LOST
     share = found.errors / sizes
     if not found.too_small and not np.all(share <= 1.0):  # else the residuals say so
         axes = np.linalg.eigh(found.covariance / np.outer(sizes, sizes))[1].T
@@ -180,4 +176,4 @@ def _blind(axes: Array, names: Sequence[str]) -> str:
     """The parameters of the last axis, which a record cannot separate or determine."""
     share = np.abs(axes[-1])
     blind = [name for name, part in zip(names, share, strict=True) if part > PART * share.max()]
-    return f"tell {' from '.join(blind)}" if len(blind) > 1 else f"determine {blind[0]}"
+    return f"separate {' from '.join(blind)}" if len(blind) > 1 else f"determine {blind[0]}"

@@ -122,8 +122,8 @@ def _displacement(
                 note = f"{words[0]}: the fit is one of a transient or a chaotic motion{rows}"
                 return replace(other, record=replace(other.record, notes=(*record.notes, note)))
     if found is None:
-        pace = linear.frequency / repetition(times, x, linear.frequency)
-        hum = added(times, x, pace, TONE) if 2.0 < pace * (times[-1] - times[0]) else []
+        base = linear.frequency / repetition(times, x, linear.frequency)
+        hum = added(times, x, base, TONE) if 2.0 < base * (times[-1] - times[0]) else []
         reasons = [*hum, str(failure or "no motion like the record's was found")]
         raise NoAnswer("; ".join(reasons))
     return found
@@ -150,11 +150,9 @@ def _best(problems: Sequence[Problem], known: bool) -> tuple[Problem, Found]:
     """The problem that is solved best, and its solution: all are begun, the best that differ are finished."""
     if not problems:
         raise NoAnswer("no motion like the record's was found to start from")
-    rows = problems[0].observed.size
-    if rows < problems[0].unknowns + (not known):
-        raise NoAnswer(
-            f"the record has {rows} numbers, too short for {problems[0].unknowns} unknowns and their errors"
-        )
+    rows, count = problems[0].observed.size, problems[0].unknowns
+    if rows < count + (not known):
+        raise NoAnswer(f"the record has {rows} numbers, too short for {count} unknowns and their errors")
     failure, begun = None, list[tuple[float, int, Array]]()
     for i, problem in enumerate(problems):
         first = _part(problem, 0)

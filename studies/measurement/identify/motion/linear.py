@@ -68,10 +68,8 @@ class Linear:
     def require_decay(self, rate: float) -> None:
         """NoAnswer if a free mode with this decay rate [1/s] hardly decays."""
         if self.decays and rate * (self.times[-1] - self.times[0]) < LASTS:
-            tone = (
-                f"a line at {1.0 / self.free_period:.4g} Hz of {1e3 * abs(self.free):.2g} mm does not decay"
-            )
-            raise NoAnswer(f"{tone}: hum, or a free mode that needs a longer record")
+            tone = f"a line at {1.0 / self.free_period:.4g} Hz of {1e3 * abs(self.free):.2g} mm"
+            raise NoAnswer(f"{tone} does not decay: hum, or a free mode that needs a longer record")
 
     def start(
         self, oscillator: ImpactOscillator, names: Sequence[str], free: Sequence[str]
@@ -80,10 +78,10 @@ class Linear:
         kept, lost = ([n for n in names if (n in NAMES) == own] for own in (True, False))
         alike = [name for name in kept if name in NAMES[:RESPONSE]]
         if not kept or (not self.decays and len(alike) > 1):
-            blind = f"{', '.join(alike[:-1])} and {alike[-1]} apart" if kept else ", ".join(lost)
+            blind = f"separate {' from '.join(alike)}" if kept else f"determine {', '.join(lost)}"
             motion = f"{'a' if self.decays else 'a steady'} motion without impacts at {self.frequency:.4g} Hz"
             height = f"of amplitude {1e3 * abs(self.steady):.3g} mm"
-            raise NoAnswer(f"{motion} {height}: it cannot tell {blind}; there is no impact in the record")
+            raise NoAnswer(f"{motion} {height}: it cannot {blind}; there is no impact in the record")
         found = {"frequency": self.frequency, "gap": AWAY * float(np.abs(self.values).max())}
         own = {"free_period": self.free_period, "decay_rate": self.decay_rate} if self.decays else {}
         at = with_values(oscillator, found | {name: own[name] for name in own if name in kept})

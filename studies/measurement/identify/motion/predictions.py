@@ -68,9 +68,8 @@ def in_closed_form(law: ContactLaw) -> bool:
 
 def family_of(oscillator: ImpactOscillator, period: int) -> MaximalFamily | KickFamily:
     """The orbits p_m by linear algebra: exact under Newton's law, close under any other."""
-    return (MaximalFamily if in_closed_form(oscillator.stop.law) else KickFamily)(
-        oscillator=oscillator, period=period
-    )
+    family = MaximalFamily if in_closed_form(oscillator.stop.law) else KickFamily
+    return family(oscillator=oscillator, period=period)
 
 
 def shapes_changed(changes: Sequence[Change], count: int) -> Array:

@@ -48,8 +48,7 @@ def predictions_of(
 ) -> Sequence[tuple[Prediction, ImpactOscillator]]:
     """Predictions of the rows and the starts of their fits, the best first; NoAnswer for a poor record.
 
-    There are none of a displacement without impacts.
-    `free` are the numbers of the sensor that are fitted to a displacement.
+    `free` are the numbers of the sensor that are fitted to a displacement.  One without impacts has no start.
     """
     if record.kind == "transitions":
         return [(Transitions(record), oscillator)]
@@ -68,9 +67,8 @@ def repetition(record: Record) -> int:
     if rows.std() < FLAT * np.abs(rows).max():
         raise NoAnswer("the strobe points stay where they are: there is no impact in the record")
     if off[period - 1] > SIMILAR * rows.std():
-        raise NoAnswer(
-            f"the record is too short, or its strobe points do not repeat: no period up to {most} rows"
-        )
+        why = "the record is too short, or its strobe points do not repeat"
+        raise NoAnswer(f"{why}: no period up to {most} rows")
     if period == 1:
         raise NoAnswer("the strobe points repeat after one drive period: no sign of an impact")
     return period
@@ -80,8 +78,8 @@ def _strobes(
     record: Record, oscillator: ImpactOscillator, names: Sequence[str]
 ) -> tuple[Strobes, ImpactOscillator]:
     period, size = repetition(record), float(record.observed[:, 0].std())
-    if (told := period * record.observed.shape[1]) < len(names):
-        raise NoAnswer(f"p{period} gives {told} numbers, which cannot tell {len(names)} parameters")
+    if (count := period * record.observed.shape[1]) < len(names):
+        raise NoAnswer(f"p{period} gives {count} numbers, too few for {len(names)} parameters")
 
     def near(at: ImpactOscillator, most: float) -> Strobes | None:
         """The orbit at the drive of this oscillator, if it is off by less than this part of the record."""
@@ -101,10 +99,8 @@ def _strobes(
         begun = orbit.oscillator if "amplitude" in names else begun
         found = near(begun, SIMILAR)
     if found is None:
-        raise NoAnswer(
-            f"no p{period} with one impact was found near the record: give better values of what is not "
-            "fitted, or fit more"
-        )
+        advice = "give better values of what is not fitted, or fit more"
+        raise NoAnswer(f"no p{period} with one impact was found near the record: {advice}")
     return found, begun
 
 
@@ -154,11 +150,8 @@ def _displacement(
     period = {"free_period": parameters_of(at)["free_period"].value}
     require_units(record, oscillator, period if "scale" in free else lengths | period)
     likely = [one for one in likely if one.cost < WORSE * likely[0].cost + SEEN][:TRIED]
-    return [
-        one
-        for i, motion in enumerate(likely)
-        for one in starts_at(record, motion, oscillator, names, free, few=i > 0)
-    ]
+    starts = [starts_at(record, motion, oscillator, names, free, i > 0) for i, motion in enumerate(likely)]
+    return [one for each in starts for one in each]
 
 
 def starts_at(
@@ -174,15 +167,14 @@ def starts_at(
     at, read = motion.oscillator, motion.reading()
     sign, read["restitution"] = read["sign"], min(max(read["restitution"], 0.01), 0.99)
     known = parameters_of(oscillator)
-    drive = 2j * motion.steady * sign / at.tip_response()
+    drive = complex(2j * motion.steady * sign / at.tip_response())
     held = [name for name in ("gap", "amplitude") if name not in names and "scale" in free]
     size = ({"gap": read["gap"], "amplitude": abs(drive)}[held[0]] / known[held[0]].value) if held else 1.0
-    read["gap"], drive = read["gap"] / size, drive / size
-    phase = float(np.angle(drive))
-    told = {name: one.value for name, one in parameters_of(at).items()} | read | {"amplitude": abs(drive)}
+    read |= {"gap": read["gap"] / size, "amplitude": abs(drive / size)}
+    shown = {name: one.value for name, one in parameters_of(at).items()} | read
     soft = [name for name in ("stiffness", "delay") if name in names]
-    sensor = dict(SENSOR) | {"offset": motion.offset, "phase": phase, "scale": sign * size}
-    sensor = {name: sensor[name] if name in free or name == "scale" else SENSOR[name] for name in sensor}
+    sensor = {"offset": motion.offset, "phase": float(np.angle(drive)), "scale": sign * size}
+    sensor = {name: sensor[name] if name in (*free, "scale") else one for name, one in SENSOR.items()}
     lasting = motion.period * at.period
     clock = np.linspace(0.0, lasting, LOOKED, endpoint=False)
     away = sensor["phase"] / at.driven.angular_frequency
@@ -190,7 +182,8 @@ def starts_at(
     lowest = float(clock[int(np.argmin(heights))])
     start = sign / size * np.add(*motion.state(lowest - away))
     law = {name: known[name].value for name in ("restitution", *soft) if name in names}
-    begun = with_values(oscillator, {n: told[n] for n in names if n in told and n in known and n not in soft})
+    own = {name for name in names if name in known and name not in soft}
+    begun = with_values(oscillator, {name: value for name, value in shown.items() if name in own})
     others: list[dict[str, float]] = [{}, law]
     if soft:
         others = [law, *({soft[0]: law[soft[0]] * factor} for factor in FACTORS[: 2 if few else None])]

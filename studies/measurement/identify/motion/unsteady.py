@@ -59,12 +59,12 @@ def unsteady_starts(
 
 def close_return(times: Array, x: Array, frequency: float) -> tuple[slice, int]:
     """Rows that nearly repeat after some drive periods, and how many: they are next to an orbit."""
-    pace, best = FINE * frequency, (math.inf, 0, 0)
-    even = np.interp(np.arange(times[0], times[-1], 1.0 / pace), times, x)
+    rate, best = FINE * frequency, (math.inf, 0, 0)
+    even = np.interp(np.arange(times[0], times[-1], 1.0 / rate), times, x)
     for period in range(2, max(3, min(LONGEST_RETURN, even.size // FINE - 1))):
         off = (even[FINE * period :] - even[: -FINE * period]) ** 2
         near = np.convolve(off, np.ones(FINE), "valid")
         best = min(best, (float(near.min()), period, int(np.argmin(near))))
     _, period, row = best
-    ends = times[0] + np.array([row, row + (period + 1) * FINE]) / pace
+    ends = times[0] + np.array([row, row + (period + 1) * FINE]) / rate
     return slice(*np.searchsorted(times, ends).tolist()), period

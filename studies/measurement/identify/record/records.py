@@ -122,9 +122,8 @@ def read_record(path: Path) -> Record:
     for i, row in enumerate((line.split(",") for line in kept[1:]), 1):
         if len(row) != len(heading):
             raise InvalidValue(f"row {i} of {path} has {len(row)} cells, the heading {len(heading)}")
-        numbers += [
-            _number(cell, f"{name} in row {i}", path) for name, cell in zip(heading, row, strict=True)
-        ]
+        cells = zip(heading, row, strict=True)
+        numbers += [_number(cell, f"{name} in row {i}", path) for name, cell in cells]
     rows = np.array(numbers, dtype=float).reshape(-1, len(heading))
     record = Record(columns=heading, rows=rows, frequency=notes.get(NOTES[0]), amplitude=notes.get(NOTES[1]))
     _check(record, path)

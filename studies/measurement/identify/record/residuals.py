@@ -19,18 +19,18 @@ SURE = 8.0  # standard deviations of an estimate that is no chance
 MANY = 6000  # rows by which a filter is seen
 
 
-def added(times: Array, residuals: Array, pace: float, part: float = 0.0) -> list[str]:
+def added(times: Array, residuals: Array, base: float, part: float = 0.0) -> list[str]:
     """A hum and a drift that last, the same in each third of a record, beside what repeats with the orbit; a
     hum that has this `part` of the variance."""
     span, rows, found = float(times[-1] - times[0]), times.size, list[str]()
     t, thirds = (times - times.mean()) / span, np.array_split(np.arange(rows), 3)
-    waves = np.exp(2j * math.pi * pace * np.outer(np.arange(1, 1 + min(29, count_of(times, pace))), times))
+    waves = np.exp(2j * math.pi * base * np.outer(np.arange(1, 1 + min(29, count_of(times, base))), times))
     matrix = np.vstack([t, t**0, waves.real, waves.imag]).T
     slope, *_ = coefficients = lstsq(matrix, residuals)[0]
     rest = residuals - matrix @ coefficients
     at = float(peaks(times, rest)[0][0])
     tones = [2.0 * np.mean((rest * np.exp(-2j * math.pi * at * times))[third]) for third in thirds]
-    tone, apart = np.mean(tones), abs(at - pace * max(1, round(at / pace))) * span
+    tone, apart = np.mean(tones), abs(at - base * max(1, round(at / base))) * span
     lasts = apart > 1.0 and max(np.abs(tones - tone)) < 0.5 * abs(tone)
     if lasts and abs(tone) / math.sqrt(2.0) > max(SURE / math.sqrt(rows), part) * rest.std():
         found = [f"a line at {at:.4g} Hz of {1e3 * abs(tone):.2g} mm that is no harmonic of the orbit: hum"]
@@ -51,14 +51,14 @@ def walked(times: Array, values: Array, frequency: float, period: int) -> list[s
     return [f"the phase of the drive walks by {walk}: the drive is at {best.x:.7g} Hz, not {frequency:.7g}"]
 
 
-def filtered(times: Array, values: Array, predicted: Array, pace: float) -> list[str]:
+def filtered(times: Array, values: Array, predicted: Array, base: float) -> list[str]:
     """A filter of one pole: predictions over readings, line by line, have squares 1 + (nu/corner)^2."""
-    (read, noise), known = orbit_of(times, values, pace, MANY), orbit_of(times, predicted, pace, MANY)[0]
+    (read, noise), known = orbit_of(times, values, base, MANY), orbit_of(times, predicted, base, MANY)[0]
     error = noise / math.sqrt(2.0 * min(times.size, MANY))
     order = 1 + np.flatnonzero(np.abs(known[1:]) > 10.0 * error)
     if order.size < 6:
         return []
-    square, nu = np.abs(known[order] / read[order]) ** 2, pace * order
+    square, nu = np.abs(known[order] / read[order]) ** 2, base * order
     weight = 0.5 / np.hypot(error / np.abs(read[order]), 3e-4) / square
     (slope, level), spread = np.polyfit(nu**2, square, 1, w=weight, cov="unscaled")
     left, gain = np.sum((weight * (square - level - slope * nu**2)) ** 2), slope**2 / spread[0, 0]
@@ -83,11 +83,11 @@ def wanders(times: Array, values: Array, residuals: Array, frequency: float) -> 
 def contradictions(times: Array, values: Array, residuals: Array, frequency: float, period: int) -> list[str]:
     """What residuals show that are no noise; the drive is at `frequency` [Hz], a `period` 0 is unknown."""
     period = period or repetition(times, values, frequency)
-    pace, bare = frequency / period, np.abs(residuals - medfilt(residuals, 5))
+    base, bare = frequency / period, np.abs(residuals - medfilt(residuals, 5))
     off = 3.0 * off_neighbours(times, values)[0]
     stray = np.minimum(bare / (1.4826 * np.median(bare[bare > 0.0])), off)
-    found = added(times, residuals, pace) + poor_rows(times, values, stray, frequency)
+    found = added(times, residuals, base) + poor_rows(times, values, stray, frequency)
     found += walked(times, values, frequency, period)
-    found = found or filtered(times, values, values - residuals, pace)
+    found = found or filtered(times, values, values - residuals, base)
     found = found or wanders(times, values, residuals, frequency)
     return found or ["the model is too small for the record"]

@@ -93,13 +93,13 @@ def defects(times: Array, values: Array, frequency: float | None) -> list[str]:
     rows, span, line = times.size, float(times[-1] - times[0]), float(peaks(times, values)[0][0])
     other = drive_found(times, values, frequency) if frequency else None
     cycles = (other[0] if other else frequency or line) * span * rows / (rows - 1)
-    pace = f"{rows / cycles:.2g} rows a drive period: the sampling ({(rows - 1) / span:.3g} Hz) is too slow"
+    sampled = f"{rows / cycles:.2g} rows a drive period: the sampling ({(rows - 1) / span:.3g} Hz)"
     size = np.array([part.std() for part in np.array_split(values, max(1, min(8, int(line * span))))])
     fall = size[0] / max(size[-1], 1e-300)  # below 2 for a settled motion
     decays = size.size > 3 and (fall > 20.0 or (fall > 3.0 and bool(np.all(np.diff(size) < 0.0))))
     sentences = {
         f"the record has {rows} rows of {cycles:.2g} drive periods; it must have at least 3": cycles < 2.99,
-        f"there are {pace}: aliasing": rows < 2.0 * cycles,
+        f"there are {sampled} is too slow: aliasing": rows < 2.0 * cycles,
         f"the record is a free decay: no line of it lasts, it falls to 1/{fall:.2g}": decays,
     }
     found = [sentence for sentence, true in sentences.items() if true]
@@ -156,7 +156,5 @@ def require_strobe_units(record: Record, oscillator: ImpactOscillator) -> None:
         raise InvalidValue(f"{both}: the record looks like {unit}")
     given, least = record.amplitude or 0.0, oscillator.grazing_amplitude()
     if given > APART * least or 0.0 < given < least / APART:
-        raise InvalidValue(
-            f"the given amplitude is {given:.4g} m, but the tip meets the stop from {least:.4g} m on: "
-            "--drive takes Hz and mm"
-        )
+        both = f"the given amplitude is {given:.4g} m, but the tip meets the stop from {least:.4g} m on"
+        raise InvalidValue(f"{both}: --drive takes Hz and mm")
