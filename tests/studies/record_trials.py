@@ -32,7 +32,7 @@ HEADING = "records,fitted,too small,refused,errors,> 5 sigma,CPU median [s],CPU 
 
 @dataclass(frozen=True)
 class Trial:
-    """A fit of one record, whose orbit lasts `period` drive periods and has so many `touches`.
+    """A fit of one record, whose orbit lasts `period` drive periods.
 
     `outcome` is fit, refused or error, `sentence` the message of the last two, `unseen` the names that a
     refused record cannot determine; `cpu` [s] includes the intervals; `values` of each name are the truth
@@ -42,7 +42,6 @@ class Trial:
     kind: str
     seed: int
     period: int
-    touches: int
     drive_known: bool
     outcome: str
     sentence: str
@@ -94,7 +93,7 @@ def trial_of(kind: str, seed: int) -> Trial:
     except Exception as error:
         outcome, sentence = "error", f"{type(error).__name__}: {error}"
     cpu, unseen = time.process_time() - begin, blind(record) if outcome == "refused" else ""
-    about = int(record.period), int(record.touches), seed % 2 == 0
+    about = int(record.period), seed % 2 == 0
     return Trial(kind, seed, *about, outcome, sentence, float(chance), cpu, unseen, values)
 
 
@@ -111,16 +110,6 @@ def table(trials: list[Trial]) -> Iterator[str]:
     yield from (f"| {' | '.join(line)} |" for line in (heading, ["--:"] * len(row), row))
 
 
-def notes(trials: list[Trial]) -> Iterator[str]:
-    """A line for each refusal, error, fit with residuals unlike noise, and fit beyond 5 sigma."""
-    for one in trials:
-        about = f"{one.kind} {one.seed}, p{one.period}, drive {'known' if one.drive_known else 'unknown'}:"
-        if one.outcome != "fit":
-            yield f"{about} {one.outcome} (blind to {one.unseen or 'nothing'}): {one.sentence}"
-        elif not one.sound() or max(map(abs, one.off().values())) > 5.0:
-            yield f"{about} chance {one.chance:.1g}, off by [sigma] {one.off()}"
-
-
 def main() -> None:
     """The program."""
     parser = ArgumentParser(description=__doc__.splitlines()[0])
@@ -132,7 +121,7 @@ def main() -> None:
     warm = own.kind, WARM[own.kind]
     with ProcessPoolExecutor(own.workers, initializer=trial_of, initargs=warm) as pool:
         trials = [*pool.map(partial(trial_of, own.kind), range(own.first, own.last + 1))]
-    print(*table(trials), "", *notes(trials), sep="\n")
+    print(*table(trials), "", *(one for one in trials if not one.sound()), sep="\n")
 
 
 if __name__ == "__main__":

@@ -18,9 +18,7 @@ from studies.measurement.identify.motion.displacement import SENSOR, UNITS
 from studies.measurement.identify.motion.starts import predictions_of, repetition
 from studies.measurement.identify.record.records import NoAnswer, read_record, synthetic
 from studies.measurement.identify.report import Estimate
-from studies.measurement.next_measurement import model as next_measurement
 from studies.physics.parameters import ALIASES, fitted_scene, parameters_of, with_values
-from studies.shell.run import Run
 from studies.shell.scene import beam_at, read_scene, single_mode_at
 
 NAMES = ("free_period", "decay_rate", "gap", "restitution")
@@ -38,8 +36,7 @@ def made(letter_scene):
 def far_from(oscillator):
     """A start that a user might have: a quarter of a per cent off in T, some in the gap, half in the rest."""
     known = parameters_of(oscillator)
-    factors = {"free_period": 0.9975, "gap": 0.97, "decay_rate": 0.85, "restitution": 1.5, "delay": 0.5}
-    factors["tip_mass"] = 1.05
+    factors = dict(free_period=0.9975, gap=0.97, decay_rate=0.85, restitution=1.5, delay=0.5, tip_mass=1.05)
     return with_values(oscillator, {n: known[n].value * f for n, f in factors.items() if n in known})
 
 
@@ -110,7 +107,7 @@ def test_restitution_and_delay_trade_off_and_the_profile_shows_it(made):
 
 
 def test_noise_that_is_larger_than_it_is_said_to_be_is_noticed(made):
-    record = synthetic("displacement", made["one_mode"], seed=1, noise=1e-6)
+    record = synthetic("displacement", made["one_mode"], seed=1, noise=1e-6, periods=20)
     for noise in (0.5e-6, 1e-6):
         assert fit(record, made["one_mode"], NAMES, noise=noise).too_small == (noise < 1e-6)
 
@@ -128,9 +125,8 @@ def test_noise_that_is_larger_than_it_is_said_to_be_is_noticed(made):
     ],
 )
 def test_what_a_record_cannot_determine_is_refused_in_a_sentence(made, name, kind, names, said, noise):
-    oscillator = made[name]
     with pytest.raises((InvalidValue, NoAnswer), match=said) as refusal:
-        fit(synthetic(kind, oscillator, seed=1), oscillator, names, noise=noise)
+        fit(synthetic(kind, made[name], seed=1), made[name], names, noise=noise)
     assert "\n" not in str(refusal.value)
 
 
@@ -145,7 +141,7 @@ def test_an_orbit_that_ends_inside_the_confidence_region_is_refused(made):
         fit(record.noisy(1, 2e-5), orbit.oscillator, ("free_period", "restitution"))
 
 
-@pytest.mark.parametrize("kind", ["strobe", "displacement", "transitions"])
+@pytest.mark.parametrize("kind", program.EXAMPLES)
 def test_a_record_is_what_its_file_says(made, tmp_path, kind):
     record = synthetic(kind, made["one_mode"], seed=1)
     (tmp_path / "a.csv").write_text(record.text())
@@ -193,7 +189,7 @@ def test_a_file_that_is_no_record_or_a_poor_one_is_refused_in_a_sentence(run_stu
 
 def test_an_example_that_cannot_be_fitted_is_a_failed_cell(run_study, monkeypatch):
     """The study has made the record itself; a gap of 20 um hides every impact in the read-out noise."""
-    monkeypatch.setattr("studies.measurement.identify.__main__.EXAMPLES", {"strobe": "one_mode"})
+    monkeypatch.setattr(program, "EXAMPLES", {"strobe": "one_mode"})
     ran = run_study("identify", "--quick", "--set", "stop.gap_m=2e-5")
     assert ran.code == 3 and ran.summary["rows"] == [] and "strobe" in ran.err
 
@@ -280,34 +276,11 @@ def test_no_answer_leaves_a_process_as_itself():
     assert type(error) is NoAnswer and str(error) == "the record is too short" and math.isnan(error.gap)
 
 
-def test_the_next_measurement_is_that_of_the_fitted_oscillator(run_study, tmp_path, made, monkeypatch):
-    monkeypatch.setattr("studies.measurement.identify.__main__.THIN", (12, 12))
-    record, argv = tmp_path / "mine.csv", ("--fit", "gap", "--next")
-    record.write_text(synthetic("strobe", made["one_mode"], seed=2).text())
-    ran = run_study("identify", "--quick", str(record), *argv, "gap", "tau")
-    assert ran.code == 0 and "gap, restitution" in ran.err and "(0." not in ran.err, ran.err
-    assert len(ran.summary["next"]) > 2 and len(ran.rows("measurements")) > len(ran.summary["next"])
-    for names, said in (("amplitude", "measured with each orbit"), ("gapp", "nearest is gap")):
-        ran = run_study("identify", str(record), *argv, names)
-        assert ran.code == 2 and said in ran.err.splitlines()[-1]
-
-
-def test_with_loud_noise_no_place_of_the_next_measurement_is_kept(tmp_path, letter_scene, monkeypatch):
-    """No orbit outlives its errors, and the letter has no orbits to compare: tables, and no traceback."""
-    monkeypatch.setattr(program, "THIN", (30, 30))
-    monkeypatch.setattr(next_measurement, "letters_orbits", lambda of: [])
-    run = Run(study="identify", folder=tmp_path, scene=letter_scene, command="")
-    places = program.where_to_measure(letter_scene, run, next_measurement.Plan().names, None, 1e-3)
-    assert places == [] and "measurements.csv" in run.files
-    assert "no orbit exists" in run.close("done", {"rows": []})["findings"][0]
-
-
 def test_the_example_makes_a_record_of_each_kind_and_finds_what_it_put_in(run_study, monkeypatch):
-    monkeypatch.setattr("studies.measurement.identify.__main__.THIN", (12, 12))
+    monkeypatch.setattr(program, "THIN", (12, 12))
     ran = run_study("identify", "--quick")
     assert ran.code == 0, ran.err
-    for kind in ("strobe", "displacement", "transitions"):
-        assert read_record(ran.folder / f"{kind}.csv").kind == kind
+    assert all(read_record(ran.folder / f"{kind}.csv").kind == kind for kind in program.EXAMPLES)
     for row in ran.rows("parameters"):
         assert abs(float(row["estimate"]) - float(row["scene"])) < 4.0 * float(row["standard_error"])
     assert {row["parameter"] for row in ran.rows("profile")} & {"delay", "restitution"}

@@ -16,8 +16,7 @@ from contact import MaximalFamily, StroboscopicMap
 from contact.orbits import fold_excess, strobe_derivatives
 from studies.shell.scene import Scene, nordmark_at, single_mode_at
 
-BESIDE = 1e-3
-"""How far from the fold, in speed, a multiplier gives K: it is then good to 1e-3."""
+BESIDE = 1e-3  # how far from the fold, in speed, a multiplier gives K: it is then good to 1e-3
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

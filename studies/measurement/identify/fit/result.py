@@ -24,8 +24,7 @@ from studies.physics.parameters import parameters_of
 LEVEL = 0.90  # probability of the intervals
 TOO_SMALL = 1e-3  # probability of such residuals from noise alone, below which the model is too small
 OPEN = ("stiffness",)  # may have no end: a record may only show that a stop is harder than a bound
-SIZES = {"restitution": 0.5, "phase": 1.0, "offset": math.inf}
-"""Least size of a number that an error is compared with: some may be zero."""
+SIZES = {"restitution": 0.5, "phase": 1.0, "offset": math.inf}  # least sizes; some values may be zero
 PART = 0.3  # of the largest, from which a parameter takes part in a direction that is not determined
 LOST = 2.0  # standard error of a logarithm above which its parameter is not determined
 LONGEST = 300.0  # logarithm of the longest interval

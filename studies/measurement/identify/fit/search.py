@@ -72,7 +72,7 @@ def _solved(
     known: bool,
 ) -> Fit:
     """The best fit from these starts; it begins again where a profile finds a better one."""
-    problem, found = _best([Problem(one, at, names, unit) for one, at in starts], known)
+    problem, found = best([Problem(one, at, names, unit) for one, at in starts], known)
     for _ in range(AGAIN):
         result = judged(problem, found, oscillator, known)
         walks, lowest = _walked(result)
@@ -146,7 +146,7 @@ def _walked(found: Fit) -> tuple[dict[str, tuple[float, float]], Point | None]:
     return walks, None
 
 
-def _best(problems: Sequence[Problem], known: bool) -> tuple[Problem, Found]:
+def best(problems: Sequence[Problem], known: bool) -> tuple[Problem, Found]:
     """The problem that is solved best, and its solution: all are begun, the best that differ are finished."""
     if not problems:
         raise NoAnswer("no motion like the record's was found to start from")

@@ -35,8 +35,7 @@ SEEN = 40.0  # fall of chi^2 by kicks: noise alone gives 25 once in a thousand r
 TRIED, WORSE = 6, 30.0  # kicked motions that are tried; ratio of chi^2 to the best one's at most
 FACTORS = (0.1, 10.0, 0.3, 3.0, 0.03, 30.0)  # on numbers of a contact that no kick shows
 RESTITUTIONS = (0.1, 0.3, 0.6, 0.9)  # tried beside the ones of the record and the scene
-ASIDE = (0.97, 0.99, 0.997, 0.999, 1.001, 1.003, 1.01, 1.03)
-"""Factors of gap or amplitude that are tried where no orbit closes: near its fold it may lack by little."""
+ASIDE = (0.97, 0.99, 0.997, 0.999, 1.001, 1.003, 1.01, 1.03)  # on gap or amplitude where no orbit closes
 LOOKED = 200  # times of an orbit at which the tip may be farthest from the stop, where its state begins
 
 
