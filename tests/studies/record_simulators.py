@@ -203,8 +203,7 @@ def draw_beam(kind, rng):
     phi = np.array([7.69, 5.5]) * rng.uniform(0.85, 1.15, 2)
     gamma = np.array([1.31 * rng.uniform(0.9, 1.1), rng.uniform(-0.6, -0.2)]) / phi
     natural = 2 * np.pi / np.sqrt(omega[0] ** 2 - c[0] ** 2 / 4)
-    # half a period of the tip on the stop
-    stiffness = (np.pi / log_uniform(rng, *CONTACT)) ** 2 / (phi @ phi)
+    stiffness = (np.pi / log_uniform(rng, *CONTACT)) ** 2 / (phi @ phi)  # half a period on the stop
     return Beam(omega, c, phi, gamma, gap, f_times_t / natural, excess, stiffness=stiffness)
 
 

@@ -54,8 +54,7 @@ def test_phase_offset_sign_and_lost_rows_are_no_obstacle(kind: str, seed: int, k
     least = [error / math.sqrt(0.9) for error in judged_by_information(record, tuple(truth)).values()]
     assert found.errors[: len(truth)] == pytest.approx(least, rel=0.2)
     sensor = dict(zip(found.names, found.estimate, strict=True))
-    # a cosine, from 7 s on
-    turn = 0.5 * math.pi - 2.0 * math.pi * sensor["frequency"] * 7.0 - sensor["phase"]
+    turn = 0.5 * math.pi - 14.0 * math.pi * sensor["frequency"] - sensor["phase"]  # a cosine, from 7 s on
     assert abs(math.remainder(turn, 2.0 * math.pi)) < 0.05
     assert sensor["offset"] == pytest.approx(3e-3, abs=4.0 * found.errors[found.names.index("offset")])
     low, high = found.intervals().T
