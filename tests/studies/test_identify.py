@@ -15,7 +15,7 @@ from studies.measurement.identify import __main__ as program
 from studies.measurement.identify.fit.profiles import rows_of
 from studies.measurement.identify.fit.search import fit
 from studies.measurement.identify.motion.displacement import SENSOR, UNITS
-from studies.measurement.identify.motion.starts import predictions_of, repetition
+from studies.measurement.identify.motion.starts import predictions_of, strobe_period
 from studies.measurement.identify.record.records import NoAnswer, read_record, synthetic
 from studies.measurement.identify.report import Estimate
 from studies.physics.parameters import ALIASES, fitted_scene, parameters_of, with_values
@@ -149,7 +149,7 @@ def test_a_record_is_what_its_file_says(made, tmp_path, kind):
     assert np.allclose(again.rows, record.rows, rtol=1e-9)
     for name in ("kind", "frequency", "amplitude"):
         assert getattr(again, name) == getattr(record, name)
-    assert kind != "strobe" or repetition(again) == 5
+    assert kind != "strobe" or strobe_period(again) == 5
 
 
 def wave(rows, step=5e-4, height=0.01):

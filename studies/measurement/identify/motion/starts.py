@@ -1,12 +1,12 @@
-"""Start values of a fit, from the record.
+"""Start values of a fit, of a settled motion.
 
-Strobe points: of the orbits p_m of the given oscillator, m the repetition of the record, the one at the
-record's drive; where there is none, or none like the record, parameters and approach speed are fitted
-together, the drive amplitude allowed to be a little off, until one is close.
+Strobe points: they repeat after m rows.  The start is the orbit p_m of the given oscillator at the record's
+drive.  If there is none, or none like the record, parameters and approach speed are fitted together until an
+orbit is close.  The drive amplitude may then be a little off.
 
 Displacement: the kicked motion that is most like it (``record.kicks``) gives free period, decay rate,
-amplitude, phase, gap, restitution, the offset and the sign of the sensor, and the state at the first row. It
-does not show the stiffness or the delay of a contact: several values are tried.
+amplitude, phase, gap, restitution, the offset and the sign of the sensor, and the state at the first row.  It
+does not show the stiffness or the delay of a contact, of which several values are tried.
 """
 
 import math
@@ -57,7 +57,7 @@ def predictions_of(
     return _displacement(record, oscillator, names, free)
 
 
-def repetition(record: Record) -> int:
+def strobe_period(record: Record) -> int:
     """The period of strobe points in drive periods; NoAnswer if they do not repeat or have no impact."""
     rows = record.observed[:, 0]
     most = min(LONGEST, len(rows) // 2)
@@ -76,7 +76,7 @@ def repetition(record: Record) -> int:
 def _strobes(
     record: Record, oscillator: ImpactOscillator, names: Sequence[str]
 ) -> tuple[Strobes, ImpactOscillator]:
-    period, size = repetition(record), float(record.observed[:, 0].std())
+    period, size = strobe_period(record), float(record.observed[:, 0].std())
     if (count := period * record.observed.shape[1]) < len(names):
         raise NoAnswer(f"p{period} gives {count} numbers, too few for {len(names)} parameters")
 
