@@ -146,9 +146,7 @@ def test_the_errors_by_the_letters_orbits(plane):
     assert {*marked[0]} - {*marked[1]} == {"letter, at an excess of 0.001"}
 
 
-def test_the_next_measurement_is_that_of_the_fitted_oscillator(
-    run_study, tmp_path, letter_scene, monkeypatch
-):
+def test_the_oscillator_is_the_fitted_one(run_study, tmp_path, letter_scene, monkeypatch):
     monkeypatch.setattr(program, "THIN", (12, 12))
     record, argv = tmp_path / "mine.csv", ("--fit", "gap", "--next")
     at = single_mode_at(letter_scene, 22.2).with_excess(1e-3)

@@ -28,9 +28,6 @@ def place(letter_scene):
     return lambda m, frequency: Place(scene=letter_scene, m=m, frequency_hz=frequency)
 
 
-# --- noise, and what an observer sees ----------------------------------------------------------------------
-
-
 def test_noise_is_stationary_remembers_and_goes_on_where_it_stopped():
     memory = DriveNoise(stability=SIGMA, correlation_s=1.0).memory(20.0)
     assert memory == pytest.approx(math.exp(-0.05)) and DriveNoise(stability=SIGMA).memory(20.0) == 0.0
@@ -94,9 +91,6 @@ def test_where_there_is_no_fold_or_no_space_above_it_nothing_is_lost(letter_scen
     assert scans(place(4, 21.3455), DRIFT, 3, 1)["met"].all()
     found = scans(above, Protocol(step=SIGMA, waiting=1000, stability=SIGMA), 2, 1)
     assert np.isnan(found["lost"]).all() and np.isfinite(found["left"]).all()
-
-
-# --- the normal form ---------------------------------------------------------------------------------------
 
 
 def test_the_multiplier_next_to_a_fold_and_how_noise_adds_up(place):
@@ -200,9 +194,6 @@ def test_formulas_are_what_scans_find(place, protocol, m, frequency):
         assert abs(np.median(found[end]) - median) < 3.5 * error
         spread = np.subtract(*np.quantile(found[end], (0.84, 0.16)))
         assert spread == pytest.approx(high - low, rel=0.35)
-
-
-# --- the study ---------------------------------------------------------------------------------------------
 
 
 def test_small_form(run_study, monkeypatch):
