@@ -36,7 +36,8 @@ FLOORS = {
     "collision orbits.families orbits.branches orbits.shooting orbits.observation orbits.__init__ __init__ "
     "warm_up",
     "studies": "__init__ letter shell.files shell.programs shell.scene shell physics shell.study "
-    "shell.every_study experiment spring methods measurement explore pictures tour report __main__",
+    "shell.every_study experiment spring methods measurement.next_measurement measurement.identify.record "
+    "measurement.identify.motion measurement.identify.fit measurement explore pictures tour report __main__",
 }
 """Files and folders in the order in which they build on each other: none imports a later one."""
 

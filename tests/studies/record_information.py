@@ -1,4 +1,4 @@
-"""What a record can tell at best: standard errors at the truth, by the simulator alone.
+"""The information in a record: standard errors at the truth, by the simulator alone.
 
     x(t) = offset + X(f t; p),   J = dx/d(p, phase, offset),   covariance = sigma^2 (J^T J)^-1,
 
@@ -33,9 +33,9 @@ def changed(lab: Beam, name: str, factor: float) -> Beam:
     elif name in own:
         own[name] *= factor
     else:
-        rate, pace = (1.0, factor) if name == "free_period" else (factor, 1.0)
-        swing = np.sqrt(lab.omega[0] ** 2 - 0.25 * lab.c[0] ** 2) / pace
-        own["omega"] = lab.omega * np.hypot(swing, 0.5 * rate * lab.c[0]) / lab.omega[0]
+        rate, period = (1.0, factor) if name == "free_period" else (factor, 1.0)
+        damped = np.sqrt(lab.omega[0] ** 2 - 0.25 * lab.c[0] ** 2) / period
+        own["omega"] = lab.omega * np.hypot(damped, 0.5 * rate * lab.c[0]) / lab.omega[0]
         own["c"] = lab.c * rate
     return Beam(**own, excess=amplitude / Beam(**own, excess=0.0).grazing_amplitude - 1.0)
 

@@ -12,7 +12,6 @@ meets a one-sided stop at x = g.  Two machines are simulated:
 
 import contextlib
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -204,8 +203,7 @@ def draw_beam(kind, rng):
     phi = np.array([7.69, 5.5]) * rng.uniform(0.85, 1.15, 2)
     gamma = np.array([1.31 * rng.uniform(0.9, 1.1), rng.uniform(-0.6, -0.2)]) / phi
     natural = 2 * np.pi / np.sqrt(omega[0] ** 2 - c[0] ** 2 / 4)
-    # half a period of the tip on the stop
-    stiffness = (np.pi / log_uniform(rng, *CONTACT)) ** 2 / (phi @ phi)
+    stiffness = (np.pi / log_uniform(rng, *CONTACT)) ** 2 / (phi @ phi)  # half a period on the stop
     return Beam(omega, c, phi, gamma, gap, f_times_t / natural, excess, stiffness=stiffness)
 
 
@@ -230,7 +228,7 @@ def attempt(kind, rng):
             if len(events) != count or np.abs((state - begin) / beam.scale).max() > REPEAT:
                 raise Rejected("integration does not repeat the closed form")
     rows = rate = 0
-    while rows < 3 * orbit * rate or rate * beam.period < 16:  # the sampling that the motion asks for
+    while rows < 3 * orbit * rate or rate * beam.period < 16:  # the sampling that the motion needs
         rows, rate = int(log_uniform(rng, 500, 20000)), log_uniform(rng, 500, 10000)
     times, noise_sd = np.arange(rows) / rate, beam.gap * log_uniform(rng, 0.0005, 0.01)
     value = noise_sd * rng.standard_normal(rows) + tip(beam, flights, times % orbit)[0]
@@ -243,14 +241,3 @@ def draw(kind, seed):
     while True:
         with contextlib.suppress(Rejected):
             return attempt(kind, rng)
-
-
-def drawn(kind, seed, folder: Path):
-    """The same, kept in a folder."""
-    path = folder / f"{kind}-{seed}.npz"
-    if not path.exists():
-        folder.mkdir(parents=True, exist_ok=True)
-        np.savez(part := path.with_suffix(".part.npz"), **vars(draw(kind, seed)))
-        part.rename(path)
-    with np.load(path, allow_pickle=True) as kept:
-        return Record(**{name: kept[name][()] for name in kept})

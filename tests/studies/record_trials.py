@@ -1,22 +1,17 @@
 """How often `fit` ends on records of `record_simulators`, and how often its intervals hold the truth.
 
-    PYTHONPATH=. python tests/studies/record_trials.py KIND FIRST LAST [--workers 2] [--out trials.csv]
+    PYTHONPATH=. python tests/studies/record_trials.py KIND FIRST LAST [--workers 2]
 
 The drive is given for even seeds, its frequency off by at most 1e-3 and its amplitude by at most 2 %; for odd
-seeds it is not.  Each trial is stored as soon as it ends; a run goes on where the last one stopped.  CPU time
-counts all threads: set OPENBLAS_NUM_THREADS=1.
+seeds it is not.  CPU time counts all threads: set OPENBLAS_NUM_THREADS=1.
 """
 
-import csv
-import json
-import tempfile
 import time
 from argparse import ArgumentParser
 from collections.abc import Iterator
-from concurrent.futures import ProcessPoolExecutor, as_completed
-from dataclasses import astuple, dataclass, fields
-from pathlib import Path
-from typing import Any
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 import record_simulators as simulators
@@ -24,20 +19,20 @@ from record_information import blind, truth_of
 
 from beam import ModalModel, Refusal, single_mode
 from contact import ContactError, HarmonicDrive, ImpactOscillator, LinearContact, NewtonRestitution, Stop
-from studies.measurement.identify.estimates import estimates_of
-from studies.measurement.identify.fit import fit
-from studies.measurement.identify.records import Record
-from studies.measurement.identify.result import TOO_SMALL, Fit
+from studies.measurement.identify.fit.result import TOO_SMALL
+from studies.measurement.identify.fit.search import fit
+from studies.measurement.identify.record.records import Record
+from studies.measurement.identify.report import estimates_of
 from studies.physics.parameters import with_values
 
 PARTS = ("estimate", "low90", "high90", "standard_error")
 WARM = {"equation_1": 11, "two_modes": 0}  # seeds of quick fits, by which each process loads its kernels
-HEADING = "records,drawn,fitted,too small,refused,errors,> 5 sigma,CPU median [s],CPU most [s]".split(",")
+HEADING = "records,fitted,too small,refused,errors,> 5 sigma,CPU median [s],CPU most [s]".split(",")
 
 
 @dataclass(frozen=True)
 class Trial:
-    """A fit of one record, whose orbit lasts `period` drive periods and has so many `touches`.
+    """A fit of one record, whose orbit lasts `period` drive periods.
 
     `outcome` is fit, refused or error, `sentence` the message of the last two, `unseen` the names that a
     refused record cannot determine; `cpu` [s] includes the intervals; `values` of each name are the truth
@@ -47,10 +42,7 @@ class Trial:
     kind: str
     seed: int
     period: int
-    touches: int
     drive_known: bool
-    rows: int
-    noise_over_gap: float
     outcome: str
     sentence: str
     chance: float
@@ -86,105 +78,50 @@ def begun(record: simulators.Record, seed: int, known: bool) -> tuple[Record, Im
     return Record(columns=("time_s", "x_m"), rows=rows, **given), with_values(start, drive)
 
 
-def intervals_of(found: Fit) -> dict[str, Any]:
-    """The rows of the fit that the study reports, by name."""
-    return {row.parameter: row for row in estimates_of("", found)}
-
-
-def trial_of(kind: str, seed: int, folder: Path | None = None) -> Trial:
+def trial_of(kind: str, seed: int) -> Trial:
     """Draw, fit and compare."""
-    record = simulators.drawn(kind, seed, folder) if folder else simulators.draw(kind, seed)
+    record = simulators.draw(kind, seed)
     values = {name: [value] for name, value in truth_of(record.beam).items()}
     given, start = begun(record, seed, seed % 2 == 0)
     outcome, sentence, chance, begin = "fit", "", 0.0, time.process_time()
     try:
         found = fit(given, start, tuple(values))
-        rows, chance = intervals_of(found), found.chance
+        rows, chance = {row.parameter: row for row in estimates_of("", found)}, found.chance
         values = {n: value + [getattr(rows[n], part) for part in PARTS] for n, value in values.items()}
     except (Refusal, ContactError) as error:
         outcome, sentence = "refused", str(error)
     except Exception as error:
         outcome, sentence = "error", f"{type(error).__name__}: {error}"
     cpu, unseen = time.process_time() - begin, blind(record) if outcome == "refused" else ""
-    about = int(record.period), int(record.touches), seed % 2 == 0, record.time.size
-    noise = float(record.noise_sd / record.beam.gap)
-    return Trial(kind, seed, *about, noise, outcome, sentence, float(chance), cpu, unseen, values)
+    about = int(record.period), seed % 2 == 0
+    return Trial(kind, seed, *about, outcome, sentence, float(chance), cpu, unseen, values)
 
 
 def table(trials: list[Trial]) -> Iterator[str]:
     """Markdown: counts; shares of intervals that hold the truth where residuals are like noise."""
-    groups = {
-        "all": lambda one: True,
-        "p1": lambda one: one.period == 1,
-        "p2 up": lambda one: one.period > 1,
-        "drive known": lambda one: one.drive_known,
-        "drive unknown": lambda one: not one.drive_known,
-        "one touch": lambda one: one.touches == 1,
-        "two touches": lambda one: one.touches == 2,
-        "noise < 0.2 % of the gap": lambda one: one.noise_over_gap < 0.002,
-        "noise > 0.2 % of the gap": lambda one: one.noise_over_gap >= 0.002,
-    }
-    lines = [[*HEADING, *(f"{name} [%]" for name in trials[0].values)]]
-    lines.append(["---"] + ["--:"] * (len(lines[0]) - 1))
-    for group, belongs in groups.items():
-        if own := [one for one in trials if belongs(one)]:
-            sound, cpu = [one for one in own if one.sound()], [one.cpu for one in own]
-            fitted, *ends = (sum(one.outcome == end for one in own) for end in ("fit", "refused", "error"))
-            far = sum(max(map(abs, one.off().values())) > 5.0 for one in sound)
-            ends_of = [[one.values[n] for one in sound] for n in own[0].values]
-            held = [100 * np.mean([v[2] <= v[0] <= v[3] for v in values] or [0]) for values in ends_of]
-            counts = map(str, [len(own), fitted, fitted - len(sound), *ends, far])
-            lines.append(
-                [group, *counts, f"{np.median(cpu):.1f}", f"{max(cpu):.1f}", *(f"{x:.0f}" for x in held)]
-            )
-    yield from (f"| {' | '.join(line)} |" for line in lines)
-
-
-def notes(trials: list[Trial]) -> Iterator[str]:
-    """A line for each refusal, error, fit with residuals unlike noise, and fit beyond 5 sigma."""
-    for one in sorted(trials, key=lambda one: one.seed):
-        about = f"{one.kind} {one.seed}, p{one.period}, drive {'known' if one.drive_known else 'unknown'}:"
-        if one.outcome == "refused":
-            yield f"{about} refused ({one.unseen or 'NOT justified'}): {one.sentence}"
-        elif one.outcome == "error":
-            yield f"{about} {one.sentence}"
-        elif not one.sound() or max(map(abs, one.off().values())) > 5.0:
-            sizes = ", ".join(f"{name} {size:.1f}" for name, size in one.off().items())
-            yield f"{about} {'off' if one.sound() else 'too small, off'} by [sigma] {sizes}"
+    sound, cpu = [one for one in trials if one.sound()], [one.cpu for one in trials]
+    fitted, *ends = (sum(one.outcome == end for one in trials) for end in ("fit", "refused", "error"))
+    far = sum(max(map(abs, one.off().values())) > 5.0 for one in sound)
+    values = {name: [one.values[name] for one in sound] for name in trials[0].values}
+    held = [100 * np.mean([low <= true <= high for true, _, low, high, _ in values[name]]) for name in values]
+    counts = map(str, [len(trials), fitted, fitted - len(sound), *ends, far])
+    row = [*counts, f"{np.median(cpu):.1f}", f"{max(cpu):.1f}", *(f"{share:.0f}" for share in held)]
+    heading = [*HEADING, *(f"{name} [%]" for name in values)]
+    yield from (f"| {' | '.join(line)} |" for line in (heading, ["--:"] * len(row), row))
 
 
 def main() -> None:
-    """The program; the csv has JSON in each cell."""
+    """The program."""
     parser = ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("kind", choices=simulators.KINDS)
     parser.add_argument("first", type=int)
     parser.add_argument("last", type=int)
     parser.add_argument("--workers", type=int, default=2)
-    parser.add_argument("--out", type=Path, default=Path("trials.csv"))
-    parser.add_argument("--cache", type=Path, default=Path(tempfile.gettempdir()) / "record-trials")
-    parser.add_argument("--draw", action="store_true", help="only draw and keep the records")
-    parser.add_argument("--markdown", action="store_true", help="print only the table")
     own = parser.parse_args()
-    seeds = range(own.first, own.last + 1)
-    for seed in seeds if own.draw else ():
-        simulators.drawn(own.kind, seed, own.cache)
-    if own.draw:
-        return
-    with own.out.open("a+", newline="") as stream:
-        stream.seek(0)
-        trials = [Trial(*map(json.loads, row)) for row in list(csv.reader(stream))[1:]]
-        lines = csv.writer(stream)
-        if not trials:
-            lines.writerow(field.name for field in fields(Trial))
-        left = [seed for seed in seeds if seed not in [one.seed for one in trials if one.kind == own.kind]]
-        warm = own.kind, WARM[own.kind], own.cache
-        with ProcessPoolExecutor(own.workers, initializer=trial_of, initargs=warm) as pool:
-            for done in as_completed([pool.submit(trial_of, own.kind, seed, own.cache) for seed in left]):
-                trials.append(done.result())
-                lines.writerow(map(json.dumps, astuple(trials[-1])))
-                stream.flush()
-    trials = [one for one in trials if one.kind == own.kind and one.seed in seeds]
-    print(*table(trials), *([] if own.markdown else ["", *notes(trials)]), sep="\n")
+    warm = own.kind, WARM[own.kind]
+    with ProcessPoolExecutor(own.workers, initializer=trial_of, initargs=warm) as pool:
+        trials = [*pool.map(partial(trial_of, own.kind), range(own.first, own.last + 1))]
+    print(*table(trials), "", *(one for one in trials if not one.sound()), sep="\n")
 
 
 if __name__ == "__main__":

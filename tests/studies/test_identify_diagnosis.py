@@ -1,7 +1,5 @@
 """What is wrong with a record: each fault that is put in is named, and a sound record has none."""
 
-from __future__ import annotations
-
 import math
 import re
 from dataclasses import replace
@@ -9,23 +7,22 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from oscillators import modes_on_stop, newton
+from oscillators import modes_on_stop, newton, slow
 from record_simulators import Beam, draw, follow, settle, tip
 
 from beam import InvalidValue
 from contact import State, simulate
 from studies.measurement.identify import figure
 from studies.measurement.identify.__main__ import answered
-from studies.measurement.identify.descent import Found
-from studies.measurement.identify.diagnosis import contradictions, defects, drive_found, peaks
-from studies.measurement.identify.fit import _best as best_of
-from studies.measurement.identify.fit import fit
-from studies.measurement.identify.problem import chance_of
-from studies.measurement.identify.profiles import Profile
-from studies.measurement.identify.records import NoAnswer, Record
-from studies.measurement.identify.result import TOO_SMALL
-from studies.measurement.identify.soundness import unit_of
-from studies.measurement.identify.spectrum import harmonics
+from studies.measurement.identify.fit.descent import Found
+from studies.measurement.identify.fit.problem import chance_of
+from studies.measurement.identify.fit.profiles import Profile
+from studies.measurement.identify.fit.result import TOO_SMALL
+from studies.measurement.identify.fit.search import best, fit
+from studies.measurement.identify.record.records import NoAnswer, Record
+from studies.measurement.identify.record.residuals import contradictions
+from studies.measurement.identify.record.soundness import defects, drive_found, unit_of
+from studies.measurement.identify.record.spectrum import harmonics, peaks
 from studies.physics.parameters import with_values
 from studies.shell.scene import single_mode_at
 
@@ -98,40 +95,27 @@ def test_chaos_has_no_defect_and_does_not_repeat():
     assert said == ["the record does not repeat within 12 drive periods"]
 
 
-def check_sound(kind, seed):
+SOUND = [("equation_1", (9, 19, 51, 52, 61)), *slow(("equation_1", range(60)), ("two_modes", range(20)))]
+
+
+@pytest.mark.parametrize(("kind", "seeds"), SOUND)
+def test_a_sound_record_has_no_defect_and_shows_its_drive(kind, seeds):
     """No defect with 8 bits, 12 bits or lost rows; the drive is right within 1e-3, and else found."""
-    record = draw(kind, seed)
-    t, x, f = record.time, record.value, record.beam.frequency
-    kept, steps = np.random.default_rng(seed).random(t.size) < 0.9, np.ptp(x) / 2.0 ** np.array([8, 12])
-    for given in (f, 1.001 * f, 0.999 * f, None):
-        assert all(defects(t, step * np.round(x / step), given) == [] for step in steps)
-        assert defects(t, x, given) == [] and defects(t[kept], x[kept], given) == []
-        assert given is None or drive_found(t, x, given) is None
-    for factor in (1.0135, 0.9, 1.1, 2.0, 1e-3, 2.0 * math.pi):
-        assert drive_found(t, x, factor * f)[0] == pytest.approx(f, rel=3e-3)
-
-
-@pytest.mark.parametrize("seed", [9, 19, 51, 52, 61])
-def test_a_sound_record_has_no_defect_and_shows_its_drive(seed):
-    check_sound("equation_1", seed)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(("kind", "seeds"), [("equation_1", 60), ("two_modes", 20)])
-def test_many_sound_records_have_no_defect_and_show_their_drive(kind, seeds):
-    for seed in range(seeds):
-        check_sound(kind, seed)
+    for seed in seeds:
+        record = draw(kind, seed)
+        t, x, f = record.time, record.value, record.beam.frequency
+        kept, steps = np.random.default_rng(seed).random(t.size) < 0.9, np.ptp(x) / 2.0 ** np.array([8, 12])
+        for given in (f, 1.001 * f, 0.999 * f, None):
+            assert all(defects(t, step * np.round(x / step), given) == [] for step in steps)
+            assert defects(t, x, given) == [] and defects(t[kept], x[kept], given) == []
+            assert given is None or drive_found(t, x, given) is None
+        for factor in (1.0135, 0.9, 1.1, 2.0, 1e-3, 2.0 * math.pi):
+            assert drive_found(t, x, factor * f)[0] == pytest.approx(f, rel=3e-3)
 
 
 def test_a_sentence_names_the_unit_or_the_factor(lab):
-    for factor, words in {
-        2.0: "2 f",
-        0.5: "f/2",
-        1e-3: "in kHz",
-        6.28: "in rad/s",
-        1.1: "off by +10 %",
-    }.items():
-        assert f"is {words}: the record's is f = {lab.f:.4g}" in drive_found(lab.t, lab.x, factor * lab.f)[1]
+    for factor, words in {2.0: "2 f", 0.5: "f/2", 1e-3: "kHz", 6.28: "rad/s", 1.1: "off by +10 %"}.items():
+        assert f"{words}: the record's is f = {lab.f:.4g}" in drive_found(lab.t, lab.x, factor * lab.f)[1]
     kept = np.random.default_rng(1).random(lab.t.size) < 0.5
     assert peaks(lab.t[kept], lab.x[kept])[0][0] == pytest.approx(lab.f, abs=0.01 / lab.t[-1])
     for given, words in {
@@ -153,13 +137,10 @@ def measured(excess, rows=2000, rate=1000.0, *, rest=False, begin=0.0, frequency
     """A record of Eq. (1), settled or from rest on, and its amplitude of the base."""
     omega, mu = math.hypot(2.0 * math.pi / TRUTH["free_period"], 0.5 * TRUTH["decay_rate"]), np.array([3.56])
     at = Beam(np.array([omega]), mu, np.ones(1), np.ones(1), 0.01, frequency, excess, TRUTH["restitution"])
-    times, state = np.arange(rows) / rate, np.zeros(2) if rest else settle(at)[1]
-    if rest:
-        flights, clock = follow(at, state, 0, begin + times[-1] + 1e-3)[2], begin + times
-    else:
-        period = settle(at)[0] / F
-        flights, clock = follow(at, state, 0, period)[2], times % period
-    x = tip(at, flights, clock)[0] + 1e-5 * np.random.default_rng(3).standard_normal(rows)
+    times, (period, state, _) = np.arange(rows) / rate, (0, np.zeros(2), 0) if rest else settle(at)
+    clock = times % (period / F) if period else begin + times
+    clean, noise = tip(at, follow(at, state, 0, clock.max() + 1e-3)[2], clock)[0], np.random.default_rng(3)
+    x = clean + 1e-5 * noise.standard_normal(rows)
     record = Record(columns=("time_s", "x_m"), rows=np.column_stack([times, x]), frequency=frequency)
     return record, float(at.amplitude)
 
@@ -174,6 +155,11 @@ def settled():
     return measured(1e-3)
 
 
+@pytest.fixture(scope="module")
+def fitted(scene_of_eq1, settled):
+    return fit(settled[0], scene_of_eq1, ALL)
+
+
 def right(found, amplitude):
     """All fitted parameters are within four standard errors, and the residuals are noise."""
     assert not found.too_small
@@ -182,19 +168,16 @@ def right(found, amplitude):
     assert {n: (at, true[n]) for n, at, error in rows if n in true and abs(at - true[n]) > 4.0 * error} == {}
 
 
-def test_a_transient_is_fitted_as_one_that_does_not_repeat(scene_of_eq1):
-    record, amplitude = measured(0.02, rest=True)
-    found = fit(record, scene_of_eq1, ALL)
-    right(found, amplitude)
-    assert found.problem.prediction.period == 0 and "transient" in found.record.notes[-1]
+CHAOS = {"excess": 0.2, "rows": 1200, "rate": 2000.0, "begin": 5.0, "frequency": 22.4}
 
 
-def test_chaos_is_fitted_and_said(scene_of_eq1):
-    """Its fit begins next to an unstable orbit."""
-    record, amplitude = measured(0.2, 1200, 2000.0, rest=True, begin=5.0, frequency=22.4)
+@pytest.mark.parametrize(("motion", "note"), [({"excess": 0.02}, "transient"), (CHAOS, "does not repeat")])
+def test_a_motion_that_does_not_repeat_is_fitted_as_such(scene_of_eq1, motion, note):
+    """The fit of chaos begins next to an unstable orbit."""
+    record, amplitude = measured(**motion, rest=True)
     found = fit(record, scene_of_eq1, ALL)
     right(found, amplitude)
-    assert "does not repeat" in found.record.notes[-1]
+    assert found.problem.prediction.period == 0 and note in found.record.notes[-1]
 
 
 def test_without_impacts_the_linear_motion_is_the_answer(scene_of_eq1):
@@ -206,9 +189,8 @@ def test_without_impacts_the_linear_motion_is_the_answer(scene_of_eq1):
     assert found.record.notes == ("no impact in the record: not fitted: gap, restitution",)
     assert found.oscillator.stop.gap == scene_of_eq1.stop.gap
     record, amplitude = measured(-0.02, rest=True, begin=20.0)
-    with pytest.raises(
-        NoAnswer, match=r"steady motion without impacts at 22\.2 Hz of amplitude 9\.8 mm: it cannot"
-    ):
+    sentence = r"steady motion without impacts at 22\.2 Hz of amplitude 9\.8 mm: it cannot separate"
+    with pytest.raises(NoAnswer, match=sentence):
         fit(record, scene_of_eq1, ALL)
     held = with_values(scene_of_eq1, {"amplitude": amplitude, "decay_rate": 3.56})
     right(fit(record, held, ("free_period", "gap")), amplitude)
@@ -222,42 +204,35 @@ def test_a_hum_beside_a_steady_motion_is_no_free_mode(scene_of_eq1):
         22.2: "repeats, but not as|no motion like|best values found, of unknown error",
     }.items():
         x = 1e-3 * np.sin(2.0 * np.pi * frequency * time) + 2e-4 * np.sin(2.0 * np.pi * 50.0 * time)
+        record = Record(columns=("time_s", "x_m"), rows=np.column_stack([time, x + noise]))
         with pytest.raises(NoAnswer, match=sentence):
-            rows = np.column_stack([time, x + noise])
-            answered(fit(Record(columns=("time_s", "x_m"), rows=rows), scene_of_eq1, ALL))
+            answered(fit(record, scene_of_eq1, ALL))
 
 
-def test_without_a_start_there_is_no_answer():
-    with pytest.raises(NoAnswer, match="no motion like"):
-        best_of([], known=False)
-
-
-def test_a_search_does_not_run_away_to_endless_oscillations(scene_of_eq1, settled):
+def test_a_search_needs_a_start_and_does_not_run_away_to_endless_oscillations(fitted):
     """Free period and drive frequency stay within a factor of e^2 of where it begins."""
-    problem = fit(settled[0], scene_of_eq1, ALL).problem
+    with pytest.raises(NoAnswer, match="no motion like"):
+        best([], known=False)
+    problem = fitted.problem
     for name in ("free_period", "frequency"):
         step = np.eye(problem.start.size)[problem.names.index(name)]
         assert np.all(np.isnan(problem.residuals(problem.start - 2.1 * step)))
 
 
-def test_residuals_that_repeat_with_the_orbit_contradict_a_fit(scene_of_eq1, settled):
+def test_residuals_that_repeat_with_the_orbit_contradict_a_fit(fitted):
     """Many weak lines that no autocorrelation shows; noise alone is as likely as it says."""
-    found = fit(settled[0], scene_of_eq1, ALL)
-    pace = found.oscillator.driven.frequency / found.problem.prediction.period
-    random, times = np.random.default_rng(3), found.record.rows[:, 0]
+    base = fitted.oscillator.driven.frequency / fitted.problem.prediction.period
+    random, times, lines = np.random.default_rng(3), fitted.record.rows[:, 0], np.arange(9, 80)
     noise = random.standard_normal(times.size)
-    lines = np.arange(9, 80)
-    phases = 2.0 * np.pi * (np.outer(pace * lines, times) + random.random((lines.size, 1)))
+    phases = 2.0 * np.pi * (np.outer(base * lines, times) + random.random((lines.size, 1)))
     for part, likely in ((0.0, True), (0.08, False)):
-        residuals = noise + part * np.cos(phases).sum(axis=0)
-        fun = np.append(residuals, np.zeros(found.unknowns.size))
-        solved = Found(found.unknowns, fun, np.eye(1), 0.0)
-        assert (chance_of(found.problem, solved, False) > TOO_SMALL) == likely
+        fun = np.append(noise + part * np.cos(phases).sum(axis=0), np.zeros(fitted.unknowns.size))
+        solved = Found(fitted.unknowns, fun, np.eye(1), 0.0)
+        assert (chance_of(fitted.problem, solved, False) > TOO_SMALL) == likely
 
 
 def test_units_and_a_drive_that_contradict_the_record_are_wrong_use(scene_of_eq1, settled):
     record, amplitude = settled
-    given = replace(record, amplitude=amplitude)
     table = {
         "amplitude is .* the record looks like millimetres: divide by 1000": ([1.0, 1e3], F, amplitude),
         "amplitude is .* the given amplitude looks like millimetres": ([1.0, 1.0], F, 1e3 * amplitude),
@@ -268,16 +243,14 @@ def test_units_and_a_drive_that_contradict_the_record_are_wrong_use(scene_of_eq1
         "is in kHz": ([1.0, 1.0], 1e-3 * F, amplitude),
     }
     for sentence, (scales, frequency, height) in table.items():
-        one = replace(given, rows=record.rows * scales, frequency=frequency, amplitude=height)
+        one = replace(record, rows=record.rows * scales, frequency=frequency, amplitude=height)
         with pytest.raises(InvalidValue, match=sentence):
             fit(one, with_values(scene_of_eq1, {"gap": 0.0105, "amplitude": height or amplitude}), ALL)
     found = fit(replace(record, frequency=1.005 * F), scene_of_eq1, ALL)
     right(found, amplitude)
     assert "the given drive of 22.311 Hz is off by +0.5" in found.record.notes[0]
-    with pytest.raises(
-        NoAnswer,
-        match=r"the model is too small .*; the best values found, of unknown error, are free_period 40\.8",
-    ):
+    sentence = r"the model is too small .*; the best values found, of unknown error, are free_period 40\.8"
+    with pytest.raises(NoAnswer, match=sentence):
         answered(replace(found, chance=0.0))
 
 
@@ -303,19 +276,17 @@ def test_a_scale_is_found_where_the_gap_or_the_amplitude_is_held(scene_of_eq1, s
         assert found.estimate[-1] == pytest.approx(-0.85, abs=4.0 * found.errors[-1])
     rows = [Profile(parameter="gap", value=v, other="decay_rate", other_value=v, depth=v) for v in (1.0, 2.0)]
     drawn = figure.draw({"mine": found}, {"mine": rows})
-    *_, profile, other = drawn.axes
     named = [text.get_text() for text in drawn.legends[0].get_texts()]
     assert named[2:] == ["rise of $\\chi^2$", "90 % interval", "other parameter, fitted again"]
-    for side in (profile, other):  # an axis has the colour of its curve
+    for side in drawn.axes[-2:]:  # an axis has the colour of its curve
         assert side.yaxis.label.get_color() == side.lines[0].get_color()
 
 
 def test_a_long_record_is_thinned_and_an_amplitude_ten_times_off_is_said(run_study, tmp_path, monkeypatch):
     """A stuck reading ends with a sentence and exit code 3.  Profiles are left out: they take time."""
-    monkeypatch.setattr("studies.measurement.identify.estimates.traded", lambda found, quick: [])
+    monkeypatch.setattr("studies.measurement.identify.report.traded", lambda found, quick: [])
     record, amplitude = measured(1e-3, rows=48_000, rate=4000.0)
-    noted = replace(record, amplitude=10.0 * amplitude)
-    (tmp_path / "a.csv").write_text(noted.text())
+    (tmp_path / "a.csv").write_text(replace(record, amplitude=10.0 * amplitude).text())
     ran = run_study("identify", "--quick", str(tmp_path / "a.csv"))
     assert ran.code == 0, ran.err
     assert "1 row in 3 of 48000 is fitted" in ran.err and ran.rows("quality")[0]["rows"] == "16000"

@@ -1,7 +1,5 @@
 """The next measurement: information, its limits and its answer, each by a second route."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -12,10 +10,14 @@ from scipy.optimize import least_squares
 from beam import single_mode
 from contact import DelayedRestitution, HarmonicDrive, ImpactOscillator, Stop, simulate
 from contact.orbits import Shooting
+from studies.measurement.identify import __main__ as program
+from studies.measurement.identify.record.records import synthetic
 from studies.measurement.next_measurement import figure
 from studies.measurement.next_measurement import model as design
 from studies.measurement.next_measurement.model import Nodes, Plan, covariance, errors_of, measurement
 from studies.physics.parameters import with_values
+from studies.shell.run import Run
+from studies.shell.scene import single_mode_at
 
 PLAN = Plan()
 
@@ -86,7 +88,7 @@ def test_the_errors_are_the_spread_of_fits(records):
     assert np.abs(np.mean(found, axis=0) / errors).max() < 3.0 / math.sqrt(records)
 
 
-def test_one_orbit_does_not_tell_gap_restitution_and_delay_apart():
+def test_one_orbit_does_not_separate_gap_restitution_and_delay():
     """However much is read; with the gap from the amplitude at grazing, or with a second orbit, it does."""
     three = Plan(names=("gap", "restitution", "delay"), before={})
     for f, m in ((20.90, 3), (21.50, 4), (22.60, 6)):
@@ -142,3 +144,26 @@ def test_the_errors_by_the_letters_orbits(plane):
     assert isinstance(drawn, Figure) and len(drawn.axes) == 6
     marked = [[text.get_text() for text in one.legends[0].get_texts()] for one in (drawn, other)]
     assert {*marked[0]} - {*marked[1]} == {"letter, at an excess of 0.001"}
+
+
+def test_the_oscillator_is_the_fitted_one(run_study, tmp_path, letter_scene, monkeypatch):
+    monkeypatch.setattr(program, "THIN", (12, 12))
+    record, argv = tmp_path / "mine.csv", ("--fit", "gap", "--next")
+    at = single_mode_at(letter_scene, 22.2).with_excess(1e-3)
+    record.write_text(synthetic("strobe", at, seed=2).text())
+    ran = run_study("identify", "--quick", str(record), *argv, "gap", "tau")
+    assert ran.code == 0 and "gap, restitution" in ran.err and "(0." not in ran.err, ran.err
+    assert len(ran.summary["next"]) > 2 and len(ran.rows("measurements")) > len(ran.summary["next"])
+    for names, said in (("amplitude", "measured with each orbit"), ("gapp", "nearest is gap")):
+        ran = run_study("identify", str(record), *argv, names)
+        assert ran.code == 2 and said in ran.err.splitlines()[-1]
+
+
+def test_with_loud_noise_no_place_of_the_next_measurement_is_kept(tmp_path, letter_scene, monkeypatch):
+    """No orbit outlives its errors, and the letter has no orbits to compare: tables, and no traceback."""
+    monkeypatch.setattr(program, "THIN", (30, 30))
+    monkeypatch.setattr(design, "letters_orbits", lambda of: [])
+    run = Run(study="identify", folder=tmp_path, scene=letter_scene, command="")
+    places = program.where_to_measure(letter_scene, run, Plan().names, None, 1e-3)
+    assert places == [] and "measurements.csv" in run.files
+    assert "no orbit exists" in run.close("done", {"rows": []})["findings"][0]

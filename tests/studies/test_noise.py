@@ -1,7 +1,5 @@
 """Noise of the drive: scans as an observer makes them, and the formulas for them."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
@@ -28,9 +26,6 @@ LONGER = (4, 21.5, WHITE), (5, 22.2, WHITE), (5, 22.2, DRIFT), (6, 22.6, DRIFT)
 def place(letter_scene):
     """p_m of Eq. (1) at a frequency."""
     return lambda m, frequency: Place(scene=letter_scene, m=m, frequency_hz=frequency)
-
-
-# --- noise, and what an observer sees ----------------------------------------------------------------------
 
 
 def test_noise_is_stationary_remembers_and_goes_on_where_it_stopped():
@@ -85,20 +80,17 @@ def test_scans_depend_on_seed_and_place_alone(place):
         assert name == "met" or not np.array_equal(values, other[name])
 
 
-def test_where_there_is_no_fold_or_no_room_above_it_nothing_is_lost(letter_scene, place):
+def test_where_there_is_no_fold_or_no_space_above_it_nothing_is_lost(letter_scene, place):
     above = place(3, band_of(letter_scene, 3).upper + 0.05)
     assert above.fold is None and start_of(above, DRIFT) is None
     narrow = place(5, 21.8327)  # p5 touches the stop a second time 6e-4 above its fold
     assert narrow.stable(narrow.fold.excess + 5e-4) and not narrow.stable(narrow.fold.excess + 7e-4)
     assert start_of(narrow, DRIFT) is None and start_of(place(5, 21.9325), DRIFT)
-    # chaos above grazing ends in p1 before it comes to p4, which lives from -0.045 to -0.040
+    # chaos above grazing ends in p1 before it comes to p4, which exists from -0.045 to -0.040
     assert not scans(place(4, 21.2475), DRIFT, 3, 1)["met"].any()
     assert scans(place(4, 21.3455), DRIFT, 3, 1)["met"].all()
     found = scans(above, Protocol(step=SIGMA, waiting=1000, stability=SIGMA), 2, 1)
     assert np.isnan(found["lost"]).all() and np.isfinite(found["left"]).all()
-
-
-# --- the normal form ---------------------------------------------------------------------------------------
 
 
 def test_the_multiplier_next_to_a_fold_and_how_noise_adds_up(place):
@@ -202,9 +194,6 @@ def test_formulas_are_what_scans_find(place, protocol, m, frequency):
         assert abs(np.median(found[end]) - median) < 3.5 * error
         spread = np.subtract(*np.quantile(found[end], (0.84, 0.16)))
         assert spread == pytest.approx(high - low, rel=0.35)
-
-
-# --- the study ---------------------------------------------------------------------------------------------
 
 
 def test_small_form(run_study, monkeypatch):

@@ -47,8 +47,6 @@ Writes:  parameters.csv and correlations.csv, quality.csv, profile.csv, residual
          letter_orbits.csv, next.png
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
@@ -57,23 +55,16 @@ from typing import Annotated
 
 from beam import InvalidValue, Refusal
 from contact import ImpactOscillator
-from studies.measurement.identify.diagnosis import contradictions, wanders
-from studies.measurement.identify.displacement import SENSOR
-from studies.measurement.identify.estimates import report, without_errors
-from studies.measurement.identify.fit import fit as fitted
-from studies.measurement.identify.records import Kind, NoAnswer, Record, read_record, synthetic
-from studies.measurement.identify.result import Fit
+from studies.measurement.identify.fit.result import Fit
+from studies.measurement.identify.fit.search import fit as fitted
+from studies.measurement.identify.motion.displacement import SENSOR
+from studies.measurement.identify.record.records import Kind, NoAnswer, Record, read_record, synthetic
+from studies.measurement.identify.record.residuals import contradictions, wanders
+from studies.measurement.identify.report import as_scene, report, without_errors
 from studies.measurement.next_measurement.figure import tabulated
 from studies.measurement.next_measurement.model import EXCESSES, FREQUENCIES_HZ, THIN, Measurement, Plan
 from studies.physics.least_model import least_modes
-from studies.physics.parameters import (
-    Description,
-    described,
-    fitted_scene,
-    in_full,
-    parameters_of,
-    require_names,
-)
+from studies.physics.parameters import Description, described, in_full, parameters_of, require_names
 from studies.shell.options import POSITIONAL, Within
 from studies.shell.scene import Scene, corresponding, harmonic, of_the_letter, periods_of
 from studies.shell.study import Run, study
@@ -114,11 +105,9 @@ def usual(record: Record, oscillator: ImpactOscillator) -> tuple[str, ...]:
 
 def driven(record: Record, oscillator: ImpactOscillator, names: Sequence[str]) -> ImpactOscillator:
     """The oscillator at the drive amplitude of the record."""
-    if record.amplitude is not None:
-        return oscillator.with_amplitude(record.amplitude)
-    if record.kind == "strobe" and "amplitude" not in names:
+    if record.amplitude is None and record.kind == "strobe" and "amplitude" not in names:
         raise InvalidValue("the record does not say the amplitude of the base: give --drive HZ MM, or fit it")
-    return oscillator
+    return oscillator if record.amplitude is None else oscillator.with_amplitude(record.amplitude)
 
 
 @study()
@@ -228,12 +217,6 @@ def answered(one: Fit) -> Fit:
         why += contradictions(times, values, residuals, frequency, period)
     reason = "; ".join([*dict.fromkeys(why)][:2])
     raise NoAnswer(f"{reason}; the best values found, of unknown error, are {without_errors(one)}")
-
-
-def as_scene(scene: Scene, found: Fit) -> Scene:
-    """The scene with the fitted oscillator."""
-    several = sorted(set(found.record.rows[:, 0])) if found.record.kind == "transitions" else []
-    return fitted_scene(scene, found.oscillator, several or [found.oscillator.driven.frequency])
 
 
 def where_to_measure(

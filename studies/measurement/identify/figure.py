@@ -1,7 +1,5 @@
 """Each record with its fit, residuals and trade-off."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -9,8 +7,8 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from studies.measurement.identify.profiles import Profile
-from studies.measurement.identify.result import Fit
+from studies.measurement.identify.fit.profiles import Profile
+from studies.measurement.identify.fit.result import Fit
 from studies.physics.parameters import parameters_of
 from studies.shell import plotting
 from studies.shell.digits import minus
@@ -19,10 +17,9 @@ CAPTION = (
     "Each record with its fit (left), residuals (middle), and the profile likelihood of the two parameters "
     "that trade off most, or the correlations of all (right)."
 )
-SHOWN, DEPTH, DARK, SMALL = 6, 2.71, 0.6, 5.5
-"""Drive periods of a displacement that are shown; rise of chi^2 at the ends of a 90 % interval; correlation
-from which on its cell is dark; size of its digits [pt]."""
-
+SHOWN = 6  # drive periods of a displacement
+DEPTH = 2.71  # rise of chi^2 at the ends of a 90 % interval
+DARK, SMALL = 0.6, 5.5  # correlation from which on its cell is dark; size of its digits [pt]
 FITTED: plotting.Style = {"linestyle": "none", "marker": "_", "color": "black", "zorder": 5, "label": "fit"}
 DOTS: plotting.Style = {"linestyle": "none", "marker": ".", "markersize": 2, "rasterized": True}
 

@@ -1,7 +1,5 @@
 """Tables and figure of the next measurement: errors over the plane of frequency and excess."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from functools import partial
 from typing import Any
@@ -13,27 +11,15 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import FuncFormatter, LogLocator
-from numpy.typing import NDArray
 
 from studies import letter
-from studies.measurement.next_measurement.model import (
-    STABLE,
-    LetterOrbits,
-    Measurement,
-    Of,
-    Plan,
-    best,
-    findings,
-    letter_rows,
-    measurements_at,
-)
+from studies.measurement.next_measurement import model
+from studies.measurement.next_measurement.model import Array, Measurement, Of, Plan, best
 from studies.shell import plotting
 from studies.shell.digits import written
 from studies.shell.run import Run
 
-BEST = ("frequency_hz", "excess", "period", "errors", "together")
-"""Columns of the best places on the terminal."""
-
+BEST = ("frequency_hz", "excess", "period", "errors", "together")  # columns on the terminal
 PLANE = "Standard errors over frequency and excess by the best orbit at each place."
 
 ERRORS = {
@@ -50,7 +36,7 @@ def tabulated(
     run: Run, of: Of, plan: Plan, frequencies: Sequence[float], excesses: Sequence[float], *, letters: bool
 ) -> list[Measurement]:
     """Tables, figure and findings over the plane, with the letter's orbits if `letters`; the best places."""
-    columns = run.map(partial(measurements_at, of, plan, excesses), frequencies, "frequencies")
+    columns = run.map(partial(model.measurements_at, of, plan, excesses), frequencies, "frequencies")
     found = [one for column in columns for one in column]
     chosen = best(found)
     caption = f"Standard errors of {', '.join(plan.names)} by one orbit.".replace("_", " ")
@@ -58,15 +44,15 @@ def tabulated(
     run.table("next", chosen, f"The five best places. {caption}", of=Measurement, show=BEST)
     if found:
         run.figure("next", draw_plane(found, plan, letters), PLANE)
-    own = letter_rows(of, plan) if letters else []
+    own = model.letter_rows(of, plan) if letters else []
     if own:
-        run.table("letter_orbits", own, "The same by the letter's orbits.", of=LetterOrbits)
-    for sentence in findings(found, own if plan.names == Plan().names else []):
+        run.table("letter_orbits", own, "The same by the letter's orbits.", of=model.LetterOrbits)
+    for sentence in model.findings(found, own if plan.names == Plan().names else []):
         run.finding(sentence)
     return chosen
 
 
-def edges(centres: NDArray[np.float64]) -> NDArray[np.float64]:
+def edges(centres: Array) -> Array:
     """Borders of cells around rising `centres`, halfway between them."""
     half = 0.5 * np.diff(centres) if centres.size > 1 else np.full(1, 0.5)
     return np.concatenate([centres[:1] - half[:1], centres[:-1] + half, centres[-1:] + half[-1:]])
@@ -77,10 +63,9 @@ def draw_plane(found: Sequence[Measurement], plan: Plan, letters: bool) -> Figur
     """The error of each wanted parameter over frequency and excess."""
     places = [(round(one.frequency_hz, 6), round(one.excess, 9)) for one in found]
     across, up = (sorted({place[i] for place in places}) for i in (0, 1))
-    figure, axes = plotting.new_figure(
-        1, len(plan.names), width=plotting.PAGE, height=0.092, sharey=True, squeeze=False
-    )
-    cells = edges(np.array(across)), STABLE * np.sinh(edges(np.arcsinh(np.array(up) / STABLE)))
+    shape = {"width": plotting.PAGE, "height": 0.092}
+    figure, axes = plotting.new_figure(1, len(plan.names), **shape, sharey=True, squeeze=False)
+    cells = edges(np.array(across)), model.STABLE * np.sinh(edges(np.arcsinh(np.array(up) / model.STABLE)))
     shown = dict(sorted(zip(places, found, strict=True), key=lambda pair: (pair[1].kept, -pair[1].together)))
     marks = dict[str, Any]()
     for k, (axis, name) in enumerate(zip(axes.flat, plan.names, strict=True)):
@@ -94,22 +79,20 @@ def draw_plane(found: Sequence[Measurement], plan: Plan, letters: bool) -> Figur
             marks["orbit that does not outlive its errors"] = Patch(color=matplotlib.colormaps["Greys"](0.25))
         if np.isfinite(seen).any():
             mesh = axis.pcolormesh(*cells, seen, cmap="viridis_r", norm=LogNorm())
-            bar = figure.colorbar(
-                mesh, ax=axis, location="bottom", label=words, ticks=LogLocator(subs=(1, 3))
-            )
+            ticks = LogLocator(subs=(1, 3))
+            bar = figure.colorbar(mesh, ax=axis, location="bottom", label=words, ticks=ticks)
             bar.minorticks_off()
             bar.formatter = FuncFormatter(lambda tick, _: written(tick))
         if letters:
-            (marks["letter, at an excess of 0.001"],) = axis.plot(
-                list(letter.PERIODS), [1e-3] * len(letter.PERIODS), **plotting.LETTER_POINTS
-            )
+            at = list(letter.PERIODS), [1e-3] * len(letter.PERIODS)
+            (marks["letter, at an excess of 0.001"],) = axis.plot(*at, **plotting.LETTER_POINTS)
         for number, one in enumerate(best(found), 1):
             circle = {"boxstyle": "circle,pad=0.1", "fc": "white", "lw": 0.5}
             place = {"ha": "center", "va": "center", "fontsize": plotting.NOTE - 1.5, "bbox": circle}
             axis.annotate(str(number), (one.frequency_hz, one.excess), **place)
             ring = Line2D([], [], marker="o", mfc="white", mec="black", ls="none")
             marks["the best places, 1 the best"] = ring
-        axis.set_yscale("symlog", linthresh=STABLE)
+        axis.set_yscale("symlog", linthresh=model.STABLE)
         axis.minorticks_off()
         axis.set_yticks(levels := (-1e-2, -1e-3, 0.0, 1e-3, 1e-2), map(written, levels))
         plotting.panel(axis, k, title)

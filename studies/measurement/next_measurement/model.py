@@ -20,10 +20,8 @@ leaves out places as close to a second impact or a doubling, where J stays finit
 excess. An error beyond the value itself only says that the parameter is not determined.
 """
 
-from __future__ import annotations
-
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import combinations
 from typing import Annotated
@@ -47,18 +45,11 @@ FREQUENCIES_HZ = np.linspace(20.5, 23.6, 63).tolist()
 EXCESSES = sorted({0.0, *(way * STABLE * 2.0 ** (0.5 * k) for k in range(13) for way in (-1, 1))})
 """The plane of frequency and excess."""
 
-THIN = 2, 6
-"""Every so many places of the plane, both ways: the full form, the small one."""
-
-FREQUENCY_HZ = 22.20
-"""The letter's p5: a scene that has it there describes the letter's spring."""
-
-UNSEEN, SPEEDS = 1e-11, (1e-4, 1.0)
-"""Ratio of singular values below which a direction of the parameters is not seen; approach speeds over
-2 pi f gap among which nodes are looked for."""
-
-APART_HZ, ALIKE = 0.3, 0.1
-"""Least distance of two of the best places; by which approach speeds may differ and count as one."""
+THIN = 2, 6  # every so many places of the plane, both ways: the full form, the small one
+UNSEEN = 1e-11  # ratio of singular values below which a direction of the parameters is not seen
+SPEEDS = 1e-4, 1.0  # approach speeds over 2 pi f gap among which nodes are looked for
+APART_HZ = 0.3  # least distance of two of the best places
+ALIKE = 0.1  # part by which approach speeds may differ and count as one
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -83,7 +74,7 @@ class Plan:
         return *self.names, *self.before, "amplitude"
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Measurement:
     """Standard errors of the wanted parameters by an orbit p_m."""
 
@@ -98,12 +89,12 @@ class Measurement:
     kept: Annotated[bool, "whether the orbit outlives its errors"]
 
 
-def by_name(orbit: PeriodicOrbit, plan: Plan, numbers: Iterable[float]) -> dict[str, float]:
+def by_name(orbit: PeriodicOrbit, plan: Plan, numbers: Array) -> dict[str, float]:
     """Numbers of the wanted parameters by their names with units."""
     known = parameters_of(orbit.oscillator)
     units = [UNITS.get(known[name].unit) for name in plan.names]
     names = [f"{name}_{unit}" if unit else name for name, unit in zip(plan.names, units, strict=True)]
-    return dict(zip(names, numbers, strict=True))
+    return dict(zip(names, numbers.tolist(), strict=True))
 
 
 def sizes_of(orbit: PeriodicOrbit, plan: Plan) -> Array:
@@ -139,11 +130,10 @@ def covariance(orbits: Sequence[PeriodicOrbit], plan: Plan) -> Array:
     return np.asarray(root @ root.T)
 
 
-def errors_of(orbits: Sequence[PeriodicOrbit], plan: Plan) -> list[float]:
+def errors_of(orbits: Sequence[PeriodicOrbit], plan: Plan) -> Array:
     """Standard errors of the wanted parameters by several orbits together."""
     errors = np.sqrt(np.diag(covariance(orbits, plan))[: len(plan.names)])
-    found: list[float] = (errors * sizes_of(orbits[0], plan)[: errors.size]).tolist()
-    return found
+    return np.asarray(errors * sizes_of(orbits[0], plan)[: errors.size])
 
 
 class Nodes:
@@ -176,17 +166,12 @@ def measurement(orbit: PeriodicOrbit, nodes: Nodes, plan: Plan) -> Measurement:
     if nodes.fold is not None:
         away = away - excess_derivatives(nodes.fold, changes_of(orbit.oscillator, plan.unknown)) * sizes
     off = math.sqrt(away @ cov @ away) if seen else math.inf
-    return Measurement(
-        frequency_hz=orbit.oscillator.driven.frequency,
-        excess=orbit.excess,
-        period=orbit.period,
-        errors=by_name(orbit, plan, (np.sqrt(np.diag(cov)[:n]) * sizes[:n]).tolist()),
-        alone=by_name(orbit, plan, (sizes / np.linalg.norm(rows, axis=0))[:n].tolist()),
-        together=float(np.linalg.det(cov[:n, :n]) ** (0.5 / n)) if seen else math.inf,
-        distance=orbit.excess - nodes.excesses[0],
-        distance_error=off,
-        kept=seen and None not in [nodes.at(orbit.excess + way * off) for way in (-1, 1)],
-    )
+    numbers = np.sqrt(np.diag(cov)[:n]) * sizes[:n], (sizes / np.linalg.norm(rows, axis=0))[:n]
+    errors, alone = (by_name(orbit, plan, each) for each in numbers)
+    together = float(np.linalg.det(cov[:n, :n]) ** (0.5 / n)) if seen else math.inf
+    place, distance = (orbit.oscillator.driven.frequency, orbit.excess), orbit.excess - nodes.excesses[0]
+    lasting = seen and None not in [nodes.at(orbit.excess + way * off) for way in (-1, 1)]
+    return Measurement(*place, orbit.period, errors, alone, together, distance, off, lasting)
 
 
 def measurements_at(of: Of, plan: Plan, excesses: Sequence[float], frequency: float) -> list[Measurement]:
@@ -215,7 +200,7 @@ def letters_orbits(of: Of, excess: float = 1e-3) -> list[PeriodicOrbit]:
     return [orbit for pair in both for orbit in [pair[0] or pair[1]] if orbit is not None]
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class LetterOrbits:
     """Standard errors of the wanted parameters by one or two of the letter's orbits, at excess 0.001."""
 
@@ -229,15 +214,12 @@ def letter_rows(of: Of, plan: Plan) -> list[LetterOrbits]:
     """Each of the letter's orbits alone, then each two that meet the stop with like speeds."""
     six = letters_orbits(of)
     alike = [pair for pair in combinations(six, 2) if abs(pair[0].speed / pair[1].speed - 1.0) < ALIKE]
-    return [
-        LetterOrbits(
-            orbits=" and ".join(f"p{orbit.period}" for orbit in orbits),
-            speed=orbits[0].speed,
-            other_speed=orbits[1].speed if len(orbits) > 1 else None,
-            errors=by_name(orbits[0], plan, errors_of(orbits, plan)),
-        )
-        for orbits in [*((orbit,) for orbit in six), *alike]
-    ]
+    rows = list[LetterOrbits]()
+    for orbits in [*((orbit,) for orbit in six), *alike]:
+        names, errors = " and ".join(f"p{one.period}" for one in orbits), errors_of(orbits, plan)
+        second = orbits[1].speed if len(orbits) > 1 else None
+        rows.append(LetterOrbits(names, orbits[0].speed, second, by_name(orbits[0], plan, errors)))
+    return rows
 
 
 def findings(found: Sequence[Measurement], letters: Sequence[LetterOrbits]) -> list[str]:
@@ -256,5 +238,5 @@ def findings(found: Sequence[Measurement], letters: Sequence[LetterOrbits]) -> l
         said.append(f"Two orbits together, {first.orbits}, determine the restitution to {error}.")
     if chosen:
         place = f"p{chosen[0].period} at {chosen[0].frequency_hz:.2f} Hz"
-        said.append(f"If the amplitude at grazing tells the gap, {place} is the best next measurement.")
+        said.append(f"If the amplitude at grazing gives the gap, {place} is the best next measurement.")
     return said[:2]

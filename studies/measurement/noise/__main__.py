@@ -17,8 +17,6 @@ Writes:  escape.csv (a row an end of an orbit: quantiles of the excess, simulate
          seed (scans-*, where a run that was stopped goes on), and the figure observed
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from functools import partial
@@ -137,9 +135,8 @@ def effect_of_noise(
     shift = np.array([row.median - row.fold for row in whole])
     part = np.abs(shift) / (np.abs(shift) + np.abs([row.fold - (row.map or 0.0) for row in whole]))
     given = run.scene.drive.frequencies_hz
-    hidden = [
-        f"p{row.m} at {row.frequency_hz:.2f} Hz" for row in met if not row.seen and row.frequency_hz in given
-    ]
+    missed = [row for row in met if not row.seen and row.frequency_hz in given]
+    hidden = [f"p{row.m} at {row.frequency_hz:.2f} Hz" for row in missed]
     change, share = float(np.median(shift)), float(np.median(part))
     kind = "Slow drift" if chosen.correlation_s else "White noise"
     by = f"{'lowers' if change < 0.0 else 'raises'} the observed hysteresis by {written(abs(change), 2)}"

@@ -1,7 +1,5 @@
 """Fig. 3 as it would have been measured."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np
@@ -25,9 +23,8 @@ OBSERVED = (
 def draw_observed(scene: Scene, rows: Sequence[Observed], letters: bool) -> Figure:
     """A panel for each noise."""
     kinds = list(dict.fromkeys(row.noise for row in rows))
-    figure, axes = plotting.new_figure(
-        len(kinds), 1, width=PAGE, height=0.025 + 0.047 * len(kinds), sharex=True, sharey=True, squeeze=False
-    )
+    shape = {"width": PAGE, "height": 0.025 + 0.047 * len(kinds)}
+    figure, axes = plotting.new_figure(len(kinds), 1, **shape, sharex=True, sharey=True, squeeze=False)
     given = "frequencies of the letter" if letters else "drive frequencies of the scene"
     for number, (axis, kind) in enumerate(zip(axes[:, 0], kinds, strict=True)):
         for m in sorted({row.m for row in rows}):

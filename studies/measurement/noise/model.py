@@ -3,8 +3,6 @@
 The observed hysteresis is the excess at which p_1 is left less that at which p_m is lost.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -22,7 +20,7 @@ Scans = Mapping[str, np.ndarray]
 Made = tuple[Place, Protocol, Scans]
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class End:
     """Excess at which an orbit ends in scans. Slips and touches have a formula of the median."""
 
@@ -40,7 +38,7 @@ class End:
     off: Annotated[float | None, "formula less median, in standard errors"] = None
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Observed:
     """The observed hysteresis; NaN where most scans do not reach p_m, or where noise throws p_m out at once.
 
@@ -62,10 +60,10 @@ class Observed:
 
 def ends_of(made: Made) -> list[End]:
     """The ends at one place in one noise."""
-    place, protocol, found = made
-    rows = []
+    place, protocol, scans = made
+    rows, fold = list[End](), None if place.fold is None else place.fold.excess
     for name in ENDS:
-        values = np.sort(found[name][np.isfinite(found[name])])
+        values = np.sort(scans[name][np.isfinite(scans[name])])
         if values.size < 2:
             continue
         law = law_of(place, protocol, name) if name in ("slipped", "touched") else None
@@ -74,22 +72,9 @@ def ends_of(made: Made) -> list[End]:
         ranks = 0.5 * (values.size + np.array([-1.0, 1.0]) * math.sqrt(values.size))
         below, above = np.interp(ranks, np.arange(values.size) + 0.5, values)
         (low, median, high), error = np.quantile(values, PARTS).tolist(), 0.5 * float(above - below)
-        rows.append(
-            End(
-                frequency_hz=place.frequency_hz,
-                m=place.m,
-                noise=protocol.name,
-                fold=None if place.fold is None else place.fold.excess,
-                end=name,
-                scans=values.size,
-                low=low,
-                median=median,
-                high=high,
-                error=error,
-                formula=formula,
-                off=None if formula is None else (formula - median) / error,
-            )
-        )
+        off = None if formula is None else (formula - median) / error
+        found = name, values.size, low, median, high, error, formula, off
+        rows.append(End(place.frequency_hz, place.m, protocol.name, fold, *found))
     return rows
 
 
@@ -102,16 +87,6 @@ def observed_of(made: Made) -> Observed | None:
     count, met = int(np.count_nonzero(np.isfinite(widths))), float(found["met"].mean())
     often = count > 0.5 * widths.size and met > 0.5
     low, median, high = np.nanquantile(widths, PARTS) if often else (math.nan,) * 3
-    return Observed(
-        frequency_hz=place.frequency_hz,
-        m=place.m,
-        noise=protocol.name,
-        map=None if place.map_fold is None else -place.map_fold,
-        fold=-place.fold.excess,
-        scans=count,
-        low=low,
-        median=median,
-        high=high,
-        met=met,
-        seen=bool(low > protocol.step),
-    )
+    by_map = None if place.map_fold is None else -place.map_fold
+    about = place.frequency_hz, place.m, protocol.name, by_map, -place.fold.excess
+    return Observed(*about, count, low, median, high, met, bool(low > protocol.step))

@@ -6,8 +6,6 @@ excess.  Noise e_j of the m periods moves the excess by their sum with weights w
 moves the critical coordinate: the left eigenvector of the multiplier 1 times what is left of b_j at the end.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -18,8 +16,7 @@ from contact import MaximalFamily, StroboscopicMap
 from contact.orbits import fold_excess, strobe_derivatives
 from studies.shell.scene import Scene, nordmark_at, single_mode_at
 
-BESIDE = 1e-3
-"""How far from the fold, in speed, a multiplier gives K: it is then good to 1e-3."""
+BESIDE = 1e-3  # how far from the fold, in speed, a multiplier gives K: it is then good to 1e-3
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

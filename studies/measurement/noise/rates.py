@@ -23,37 +23,23 @@ Uhlenbeck process with an absorbing end, second order in the width of cells, exa
 each other.  What ends in the second half of a waiting counts for the next step, as in the scans.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contact.orbits import cloud, strobe_derivatives
 from studies.measurement.noise.places import Place
 from studies.measurement.noise.scans import Protocol
+from studies.physics.drive_noise import Array
 
-LAG = 1.85
-"""Minus the mean y at which eta' = y - eta^2 leaves, from far above: simulated, good to 0.003."""
+LAG = 1.85  # minus the mean y at which eta' = y - eta^2 leaves, from far above: simulated, good to 0.003
+SLOW = 500.0  # drive periods of correlation from which on a drift is slow: an orbit passes its fold in 100
+CELLS = 10  # of the density in a standard deviation of the drift
+PHASES = 4  # parts of a step at which a scan begins
+WIDEST = 6.0  # standard deviations beyond which the drift is left out
+BELOW = -0.01  # excess at which the motion without impacts is linearised: any below grazing
 
-SLOW = 500.0
-"""Correlation time in drive periods from which on a drift is slow: an orbit passes its fold in a hundred."""
-
-CELLS = 10
-"""Cells of the density in a standard deviation of the drift."""
-
-PHASES = 4
-"""Parts of a step at which a scan begins."""
-
-WIDEST = 6.0
-"""Standard deviations beyond which the drift is left out."""
-
-BELOW = -0.01
-"""Excess at which the motion without impacts is linearised: any below grazing."""
-
-Array = NDArray[np.float64]
 Law = tuple[Array, Array]
 """Excesses, and the probability of each to be the one at which the orbit ended."""
 
@@ -74,12 +60,8 @@ def mean_time(distance: float, place: Place, stability: float) -> float:
 
 def slipped_in_white_noise(place: Place, protocol: Protocol) -> Law:
     """Where p_m slips."""
-    return of_rates(
-        place.fold.excess,
-        -1.0,
-        protocol,
-        lambda x: 1.0 / (place.m * mean_time(x - place.fold.excess, place, protocol.stability)),
-    )
+    end, deviation = place.fold.excess, protocol.stability
+    return of_rates(end, -1.0, protocol, lambda x: 1.0 / (place.m * mean_time(x - end, place, deviation)))
 
 
 def of_rates(end: float, way: float, protocol: Protocol, rate: Callable[[float], float]) -> Law:
@@ -105,7 +87,7 @@ def in_drift(end: float, way: float, protocol: Protocol, frequency_hz: float) ->
     width = protocol.step / fine
     jump, levels, found = (s / width) ** 2, [], []
     for phase in range(PHASES):
-        first = protocol.reach - protocol.step * (phase + 0.5) / PHASES  # room before the end
+        first = protocol.reach - protocol.step * (phase + 0.5) / PHASES  # distance to the end
         x = first - protocol.step * np.arange(protocol.steps)
         # cells from the end inwards, up to `WIDEST` deviations; the end moves by `fine` cells a step
         count = math.ceil((WIDEST * s + first) / width)

@@ -10,11 +10,9 @@ half of them lie in stretches without impact longer than `QUIET` periods.
 
 Below its fold the motion can be thrown back to p_m many times before it is lost.  A scan begins at a random
 part of a step, so that results do not lie on a grid; downwards it begins on p_m next to its fold, where this
-leaves room for the noise.  Whether a scan from above grazing reaches p_m at all is a question of its own
+leaves space for the noise.  Whether a scan from above grazing reaches p_m at all is a question of its own
 (`meets`): low in a band Eq. (1) is chaotic there, and can end in p_1 first.
 """
-
-from __future__ import annotations
 
 import math
 from collections.abc import Iterator
@@ -29,31 +27,20 @@ from beam import InvalidValue
 from contact import ContactError
 from contact.orbits import born
 from studies.measurement.noise.places import Place
-from studies.physics.drive_noise import Drift, DriveNoise, watched
+from studies.physics.drive_noise import Array, Drift, DriveNoise, watched
 
-FAR = 6.0
-"""Standard deviations of the noise, beside two steps, from the start of a scan to the end of the orbit."""
-
-BEYOND = 30
-"""Steps beyond the end of an orbit after which a scan is given up: p_m held by noise alone lasts a few."""
-
-RAMP = 0.02
-"""Part of the waiting in which the amplitude goes to its new value: a sudden step would swing over."""
-
-MEETINGS = 10
-"""Scans from the scene's `born_excess` for the share of those that meet p_m."""
-
-ROOM = 3.0
+FAR = 6.0  # standard deviations of the noise, beside two steps, from the start of a scan to the orbit's end
+BEYOND = 30  # steps beyond the end of an orbit at most: p_m held by noise alone lasts a few
+RAMP = 0.02  # part of the waiting in which the amplitude goes to its new value, without overshoot
+MEETINGS = 10  # scans from the scene's `born_excess` for the share of them that meets p_m
+MARGIN = 3.0
 """Standard deviations of the noise above the start of a scan at which p_m must still be: in the low half of a
 band Eq. (1) has it in a window above its fold only, up to the graze of another touch, at the end of the band
 too narrow to hold it in noise."""
-
-RATIO, FEWEST = 20.0, 1000
-"""Largest ratio of noise and step; least number of drive periods waited: long against `QUIET`."""
-
+RATIO = 20.0  # of noise and step, or of step and noise, at most
+FEWEST = 1000  # drive periods waited: long against `QUIET`
 EPS = 1e-9
 
-Array = NDArray[np.float64]
 ENDS = ("slipped", "lost", "touched", "left")
 """Ends that are noted: of p_m downwards, of p_1 upwards."""
 
@@ -86,10 +73,8 @@ class Protocol(DriveNoise):
     def __post_init__(self) -> None:
         low, high = self.stability / RATIO, self.stability * RATIO
         if not low * (1.0 - EPS) <= self.step <= high * (1.0 + EPS):
-            raise InvalidValue(
-                f"amplitude_step is {self.step:g} [1]; with a stability of {self.stability:g} it must lie "
-                f"between {low:g} and {high:g}"
-            )
+            valid = f"with a stability of {self.stability:g} it must lie between {low:g} and {high:g}"
+            raise InvalidValue(f"amplitude_step is {self.step:g} [1]; {valid}")
 
 
 def waitings(
@@ -148,10 +133,8 @@ def scans(place: Place, protocol: Protocol, count: int, seed: int) -> dict[str, 
         return protocol.drift(place.frequency_hz, dice), dice.random()
 
     below = place.strobed.at(-protocol.reach).steady()
-    ways = (
-        (start_of(place, protocol), -protocol.step, place.m),
-        ((-protocol.reach, below), protocol.step, 0),
-    )
+    down = start_of(place, protocol), -protocol.step, place.m
+    ways = down, ((-protocol.reach, below), protocol.step, 0)
     found = np.full((len(ways), 2, count), math.nan)
     for way, (start, step, m) in enumerate(ways):
         if start is None:
@@ -175,7 +158,7 @@ def start_of(place: Place, protocol: Protocol) -> tuple[float, Any] | None:
     if place.fold is None:
         return None
     excess = place.fold.excess + protocol.reach
-    if place.stable(excess + ROOM * protocol.stability) is None:
+    if place.stable(excess + MARGIN * protocol.stability) is None:
         return None
     state = place.stable(excess)
     return None if state is None else (excess, state)

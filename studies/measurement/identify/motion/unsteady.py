@@ -4,29 +4,24 @@ Rows of chaos that nearly repeat after m drive periods are next to an unstable o
 (close returns: Auerbach et al., Phys. Rev. Lett. 58 (1987) 2387).  The motion begins with the first flight.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contact import ImpactOscillator
-from studies.measurement.identify.displacement import Displacement
-from studies.measurement.identify.kicks import Search, kicked_motions, poles
-from studies.measurement.identify.linear import Linear, state_of
-from studies.measurement.identify.starts import TRIED, starts_at
+from studies.measurement.identify.motion.displacement import Displacement
+from studies.measurement.identify.motion.linear import Linear, state_of
+from studies.measurement.identify.motion.starts import TRIED, starts_at
+from studies.measurement.identify.record.kicks import Search, kicked_motions, poles
+from studies.measurement.identify.record.records import Array
 from studies.physics.parameters import with_values
 
-Array = NDArray[np.float64]
-
-BELOW, SHORT, EARLY = 0.98, 0.3, 3.0
-"""Gaps below which a row is off the stop; drive periods that show a state at least, that are fitted first."""
-
-FINE, LONGEST_RETURN = 64, 9
-"""Rows a drive period, and drive periods, between which a record is compared with itself."""
+BELOW = 0.98  # gaps below which a row is off the stop
+SHORT, EARLY = 0.3, 3.0  # drive periods that show a state at least, and that are fitted first
+FINE = 64  # rows a drive period at which a record is compared with itself
+LONGEST_RETURN = 9  # drive periods after which it may nearly repeat
 
 
 def unsteady_starts(
@@ -64,12 +59,12 @@ def unsteady_starts(
 
 def close_return(times: Array, x: Array, frequency: float) -> tuple[slice, int]:
     """Rows that nearly repeat after some drive periods, and how many: they are next to an orbit."""
-    pace, best = FINE * frequency, (math.inf, 0, 0)
-    even = np.interp(np.arange(times[0], times[-1], 1.0 / pace), times, x)
+    rate, best = FINE * frequency, (math.inf, 0, 0)
+    even = np.interp(np.arange(times[0], times[-1], 1.0 / rate), times, x)
     for period in range(2, max(3, min(LONGEST_RETURN, even.size // FINE - 1))):
         off = (even[FINE * period :] - even[: -FINE * period]) ** 2
         near = np.convolve(off, np.ones(FINE), "valid")
         best = min(best, (float(near.min()), period, int(np.argmin(near))))
     _, period, row = best
-    ends = times[0] + np.array([row, row + (period + 1) * FINE]) / pace
+    ends = times[0] + np.array([row, row + (period + 1) * FINE]) / rate
     return slice(*np.searchsorted(times, ends).tolist()), period

@@ -5,41 +5,30 @@ With p held at a value all others are fitted again; chi^2 rises by r^2 in units 
 value moves on by the secant of r.  A refit that has not settled is not believed: a shorter step follows.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated
 
 import numpy as np
-from numpy.typing import NDArray
 
 from beam import Refusal
 from contact import ContactError
-from studies.measurement.identify.predictions import Prediction
-from studies.measurement.identify.problem import SETTLED, Problem, through_any_value
+from studies.measurement.identify.fit.problem import RANGES, SETTLED, Problem, through_any_value
+from studies.measurement.identify.motion.predictions import Prediction
+from studies.measurement.identify.record.records import Array
 from studies.physics.parameters import with_values
 
-Array = NDArray[np.float64]
-
-REFITS, FEW, NEAR = 16, 30, 0.15
-"""Most refits to a side, and the steps of each; distance of the last r from the reach, as a part of it."""
-
-GROW, SHRINK, WILD = 4.0, 0.3, 1e4
-"""Longest step over the last one; what follows a step that fails; rise of chi^2 where no refit begins."""
-
-FARTHEST = 50.0
-"""Logarithm by which a step along a tangent moves a value at most."""
-
-FAR = 0.25
-"""Part of the reach from which on a walk that comes to a halt is continued by a line."""
-
-BENT = 0.2
-"""A parameter has a profile where chi^2 a reach away differs by this part from what (J^T J)^-1 says."""
+REFITS, FEW = 16, 30  # most refits to a side, and the steps of each
+NEAR = 0.15  # distance of the last r from the reach, as a part of it
+GROW, SHRINK = 4.0, 0.3  # longest step over the last one; what follows a step that fails
+WILD = 1e4  # rise of chi^2 where no refit begins
+FARTHEST = 50.0  # logarithm by which a step along a tangent moves a value at most
+FAR = 0.25  # part of the reach from which on a walk that comes to a halt is continued by a line
+BENT = 0.2  # part by which chi^2 a reach away differs from what (J^T J)^-1 says, if there is a profile
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Profile:
     """One point of a profile likelihood: a parameter is held, all others are fitted again."""
 
@@ -87,12 +76,8 @@ class Walk:
         sizes[sizes == 0.0] = 1.0
         others = np.delete(rows / sizes, self.i, axis=1)
         follow = np.linalg.lstsq(others, -rows[:, self.i], rcond=None)[0] / np.delete(sizes, self.i)
-        each = values[self.i] / self.best.values[self.i] if away and self._log else 1.0
+        each = values[self.i] / self.best.values[self.i] if away and self.problem.log[self.i] else 1.0
         return Point(away, rise, values, np.insert(follow, self.i, 1.0) * self.error * each, prediction)
-
-    @property
-    def _log(self) -> bool:
-        return bool(self.problem.log[self.i])
 
     def moved(self, point: Point, step: float, last: Point | None = None) -> Array:
         """All values so many standard errors on: along a point's direction, on the parabola through the last;
@@ -102,9 +87,8 @@ class Walk:
             back = last.away - point.away
             found += (last.values - point.values - back * point.along) * (step / back) ** 2
             found[self.i] = point.values[self.i] + step * point.along[self.i]
-        found[log] = point.values[log] * np.exp(
-            np.clip(found[log] / point.values[log] - 1.0, -FARTHEST, FARTHEST)
-        )
+        part = np.clip(found[log] / point.values[log] - 1.0, -FARTHEST, FARTHEST)
+        found[log] = point.values[log] * np.exp(part)
         others = np.arange(found.size) != self.i
         low, high = self.problem.bounds * self.problem.sizes
         found[others] = np.clip(found, low, high)[others]
@@ -116,9 +100,8 @@ class Walk:
         if not low < values[self.i] < high:
             return math.nan
         problem = self.problem.of(prediction)
-        return (
-            float(np.sum(problem.residuals(problem.unknowns_of(values)) ** 2)) - self.chi2
-        ) / self.variance
+        chi2 = float(np.sum(problem.residuals(problem.unknowns_of(values)) ** 2))
+        return (chi2 - self.chi2) / self.variance
 
     def bent(self, reach: float) -> bool:
         """Whether chi^2 is not the parabola that (J^T J)^-1 says."""
@@ -140,9 +123,8 @@ class Walk:
             if found.left > self.variance * SETTLED:
                 return None
             rise = (found.chi2 - self.chi2) / self.variance
-            return self._point(
-                point.away + step, rise, np.insert(fewer.values(found.x), self.i, value), prediction
-            )
+            whole = np.insert(fewer.values(found.x), self.i, value)
+            return self._point(point.away + step, rise, whole, prediction)
         except (ContactError, Refusal):
             return None
 
@@ -169,30 +151,18 @@ class Walk:
                 step = (high.away - low.away) * min(max(part, 0.1), 0.9)
         if high is None and last is not None and low.r > FAR * most and low.r > last.r:
             low, high = last, low  # the walk has come to a halt: the line through its last two points
-        return points, self._edge(reach) if high is None else self._end(low, high, most)
+        edge = RANGES.get(self.name, (0.0, math.inf))[reach > 0.0]  # no r inside it is as large as the reach
+        return points, edge if high is None else self._end(low, high, most)
 
     def _end(self, low: Point, high: Point, reach: float) -> float:
         """Where r is the reach, by the line through two points."""
         ends = low.values[self.i], high.values[self.i]
         return float(ends[0] + (ends[1] - ends[0]) * (reach - low.r) / (high.r - low.r))
 
-    def _edge(self, reach: float) -> float:
-        """Where the parameter ends; no r within the physical range is as large as the reach."""
-        if self.name == "restitution":
-            return 0.0 if reach < 0.0 else 1.0
-        return math.inf if reach > 0.0 else 0.0
-
 
 def rows_of(walk: Walk, points: Sequence[Point], other: str) -> list[Profile]:
     """The points of a walk, the parameter rising."""
     k = walk.problem.names.index(other)
-    return [
-        Profile(
-            parameter=walk.name,
-            value=float(point.values[walk.i]),
-            other=other,
-            other_value=float(point.values[k]),
-            depth=point.rise,
-        )
-        for point in sorted([walk.best, *points], key=lambda point: point.away)
-    ]
+    points = sorted([walk.best, *points], key=lambda point: point.away)
+    rows = [(float(point.values[walk.i]), float(point.values[k]), point.rise) for point in points]
+    return [Profile(walk.name, value, other, fitted, rise) for value, fitted, rise in rows]

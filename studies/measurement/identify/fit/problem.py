@@ -1,55 +1,38 @@
 """The least-squares problem of a fit: residuals and their derivatives by unknowns without units."""
 
-from __future__ import annotations
-
 import copy
 import math
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import Self
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import stats
 
 from beam import Refusal, SuspiciousValue
 from contact import ContactError, ImpactOscillator
-from studies.measurement.identify.descent import Found, descend
-from studies.measurement.identify.predictions import Prediction
-from studies.measurement.identify.records import NoAnswer
-from studies.measurement.identify.spectrum import count_of, harmonics
+from studies.measurement.identify.fit.descent import Found, descend
+from studies.measurement.identify.motion.predictions import Prediction
+from studies.measurement.identify.record.records import Array, NoAnswer
+from studies.measurement.identify.record.spectrum import count_of, harmonics
 from studies.physics.parameters import parameters_of, with_values
 
-Array = NDArray[np.float64]
-
-MOST = 100
-"""Steps of a fit: a dozen are usual, a hundred along a valley of two parameters that trade off."""
-
-GAIN = 1e-3
-"""A fit ends where a step lowers chi^2 by less than this times the noise's variance: 0.03 standard errors."""
-
-SETTLED = 0.1
-"""Fall of chi^2 that may be left to a further step, in units of the noise's variance: a third of an error."""
-
-
+MOST = 100  # steps of a fit: a dozen are usual, a hundred along a valley of two parameters that trade off
+GAIN = 1e-3  # fall of chi^2 at which a fit ends, in the noise's variance: 0.03 standard errors
+SETTLED = 0.1  # fall of chi^2 that may be left to a further step, in the noise's variance
 RANGES = {"decay_rate": (0.0, math.inf), "restitution": (0.0, 1.0)}
 """The parameters that may come close to an end of their range; there a logarithm would have no end."""
-
 FARTHEST = {"free_period": 2.0, "frequency": 2.0}
 """Logarithm by which a search may leave where it begins: a motion of endless oscillations takes for ever."""
-
-LAGS = 10
-"""Number of lags in the autocorrelation of residuals."""
-
-TINY = 1e-300
-"""Least ratio of a value to where it starts: a step along a tangent may round to zero."""
+LAGS = 10  # of the autocorrelation of residuals
+TINY = 1e-300  # least ratio of a value to where it starts: a step along a tangent may round to zero
 
 
 @contextmanager
 def through_any_value() -> Iterator[None]:
     """No warnings of suspicious values, as a search may pass through any."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", SuspiciousValue)
+    with warnings.catch_warnings(action="ignore", category=SuspiciousValue):
         yield
 
 
@@ -77,10 +60,9 @@ class Problem:
         self.log[[i for i, name in enumerate(names) if name in RANGES]] = False
         self.sizes[self.log] = values[self.log]
         self.start = self.unknowns_of(values)
-        ends = [FARTHEST.get(name, math.inf) for name in names]
-        self.farthest = np.append(ends, np.full(prediction.sizes.size, math.inf))
-        ranges = [RANGES.get(name, (-math.inf, math.inf)) for name in names]
-        ranges += [(-math.inf, math.inf)] * prediction.sizes.size
+        everything = [*names, *[""] * prediction.sizes.size]
+        self.farthest = np.array([FARTHEST.get(name, math.inf) for name in everything])
+        ranges = [RANGES.get(name, (-math.inf, math.inf)) for name in everything]
         self.bounds = np.array(ranges).T / self.sizes
         self.weights = 1.0 / prediction.record.units(noise).ravel()
         self.observed = prediction.record.observed.ravel()
@@ -134,10 +116,10 @@ class Problem:
         """Shape (rows + unknowns, unknowns); NoAnswer if it is not finite."""
         rows = self.prediction.jacobian(*self.at(unknowns), self.names) * self.weights[:, None]
         if not np.all(np.isfinite(rows)):
-            raise NoAnswer("the motion hangs too sensitively on where it begins")
+            raise NoAnswer("the motion depends too sensitively on its start")
         return np.vstack([rows * self.slopes(unknowns), np.diag(self.held)])
 
-    def of(self, prediction: Prediction) -> Problem:
+    def of(self, prediction: Prediction) -> Self:
         """The same problem by a prediction that stands elsewhere."""
         found = copy.copy(self)
         found.prediction, found.last = prediction, None
@@ -148,14 +130,7 @@ class Problem:
         `gain` times the noise's variance."""
         if not np.all(np.isfinite(self.residuals(start))):
             raise NoAnswer("no motion like the record's was found to start from")
-        return descend(
-            self.residuals,
-            self.jacobian,
-            start,
-            self.bounds,
-            most=most,
-            enough=lambda chi2: gain * chi2 / self.freedom,
-        )
+        return descend(self.residuals, self.jacobian, start, self.bounds, most, gain / self.freedom)
 
 
 def chance_of(problem: Problem, solved: Found, known: bool) -> float:
@@ -176,8 +151,8 @@ def chance_of(problem: Problem, solved: Found, known: bool) -> float:
         found.append(float(stats.chi2.sf(box, LAGS)))
         if period:
             times = prediction.record.rows[:, 0]
-            pace = problem.at(solved.x)[0].driven.frequency / period
-            lines, scatter = harmonics(times, residuals, pace, count_of(times, pace))
+            base = problem.at(solved.x)[0].driven.frequency / period
+            lines, scatter = harmonics(times, residuals, base, count_of(times, base))
             more = 2 * lines.size - 1 - problem.unknowns
             within = scatter**2 * (size - 2 * lines.size + 1)
             found += _beyond(float(residuals @ residuals), within, more, freedom)

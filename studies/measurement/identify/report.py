@@ -1,7 +1,5 @@
 """The rows of a fit: estimates with errors and intervals, and the quality of the fit."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import combinations
@@ -10,19 +8,18 @@ from typing import Annotated, Any
 import numpy as np
 
 from studies.measurement.identify import figure
-from studies.measurement.identify.displacement import UNITS
-from studies.measurement.identify.profiles import Profile, rows_of
-from studies.measurement.identify.result import Fit
-from studies.physics.parameters import parameters_of
+from studies.measurement.identify.fit.profiles import Profile, rows_of
+from studies.measurement.identify.fit.result import Fit
+from studies.measurement.identify.motion.displacement import UNITS
+from studies.physics.parameters import fitted_scene, parameters_of
 from studies.shell.digits import minus, prefixed, written
 from studies.shell.run import Run
+from studies.shell.scene import Scene
 
-TRADE, NOTABLE, MOST, UNLIKE = 0.95, 0.5, 10, 2.0
-"""Correlations from which on two parameters trade off, and from which on they are shown; how many; ratio of
-a fitted amplitude to a given one that contradicts it (clamped beams: 1.57)."""
-
-SHOWN = ("record", "parameter", "value", "interval", "began", "in_scene")
-"""Columns of the estimates on the terminal."""
+TRADE, NOTABLE = 0.95, 0.5  # correlations from which on two parameters trade off, or are shown
+MOST = 10  # correlations that are shown
+UNLIKE = 2.0  # ratio of a fitted amplitude to a given one that contradicts it; clamped beams: 1.57
+SHOWN = ("record", "parameter", "value", "interval", "began", "in_scene")  # columns on the terminal
 
 
 @dataclass(frozen=True)
@@ -106,10 +103,9 @@ def without_errors(found: Fit) -> str:
 def estimates_of(name: str, found: Fit) -> list[Estimate]:
     """The rows of a fit."""
     columns = found.start, found.estimate, found.errors, *found.intervals().T, found.before
+    numbers = (column.tolist() for column in columns)
     correlations = [dict(zip(found.names, row, strict=True)) for row in found.correlations.tolist()]
-    rows = zip(
-        found.names, units_of(found), *(column.tolist() for column in columns), correlations, strict=True
-    )
+    rows = zip(found.names, units_of(found), *numbers, correlations, strict=True)
     return [Estimate(name, *row) for row in rows]
 
 
@@ -155,6 +151,12 @@ def notes_of(found: Fit) -> list[str]:
     return notes
 
 
+def as_scene(scene: Scene, found: Fit) -> Scene:
+    """The scene with the fitted oscillator."""
+    several = sorted(set(found.record.rows[:, 0])) if found.record.kind == "transitions" else []
+    return fitted_scene(scene, found.oscillator, several or [found.oscillator.driven.frequency])
+
+
 def report(run: Run, found: Mapping[str, Fit]) -> dict[str, Any]:
     """Tables, figure and notes of the fits."""
     profiles = {name: traded(one, run.quick) for name, one in found.items()}
@@ -163,7 +165,7 @@ def report(run: Run, found: Mapping[str, Fit]) -> dict[str, Any]:
     run.table("parameters", estimates, caption, of=Estimate, show=SHOWN)
     pairs = [pair for name, one in found.items() for pair in correlated(name, one)]
     run.table("correlations", pairs, "The largest correlations, above 0.5 in size.", of=Correlation)
-    quality = [Quality(name, len(f.residuals), f.noise, f.freedom, f.chance) for name, f in found.items()]
+    quality = [Quality(n, len(f.residuals), f.noise, f.problem.freedom, f.chance) for n, f in found.items()]
     run.table("quality", quality, "The residuals of the fits.", of=Quality)
     points = [row for rows in profiles.values() for row in rows]
     run.table("profile", points, "Likelihood where two parameters trade off.", of=Profile, show=())

@@ -2,18 +2,16 @@
 
 Strobe points: the periodic orbit p_m next to the last one (``contact.orbits.Shooting``), its m strobes in the
 cyclic order that fits best. Transitions: the fold of each p_m. A displacement is predicted in
-`studies.measurement.identify.displacement`.
+`studies.measurement.identify.motion.displacement`.
 """
-
-from __future__ import annotations
 
 import copy
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Self
 
 import numpy as np
-from numpy.typing import NDArray
 
 from beam import InvalidValue
 from contact import ContactLaw, ImpactOscillator, MaximalFamily, NewtonRestitution, simulate
@@ -27,10 +25,8 @@ from contact.orbits import (
     fold_of,
     orbit_derivatives,
 )
-from studies.measurement.identify.records import Record
+from studies.measurement.identify.record.records import Array, Record
 from studies.physics.parameters import changes_of
-
-Array = NDArray[np.float64]
 
 
 class Prediction(ABC):
@@ -48,11 +44,11 @@ class Prediction(ABC):
     prior: Array = np.empty(0)
     sensor: tuple[str, ...] = ()
 
-    def parts(self) -> Sequence[Prediction]:
+    def parts(self) -> Sequence[Self]:
         """What is fitted one after the other, itself last."""
         return [self]
 
-    def again(self) -> Prediction:
+    def again(self) -> Self:
         """A copy, whose searches leave this one where it is."""
         return copy.copy(self)
 
@@ -72,9 +68,8 @@ def in_closed_form(law: ContactLaw) -> bool:
 
 def family_of(oscillator: ImpactOscillator, period: int) -> MaximalFamily | KickFamily:
     """The orbits p_m by linear algebra: exact under Newton's law, close under any other."""
-    return (MaximalFamily if in_closed_form(oscillator.stop.law) else KickFamily)(
-        oscillator=oscillator, period=period
-    )
+    family = MaximalFamily if in_closed_form(oscillator.stop.law) else KickFamily
+    return family(oscillator=oscillator, period=period)
 
 
 def shapes_changed(changes: Sequence[Change], count: int) -> Array:

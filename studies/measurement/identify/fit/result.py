@@ -5,55 +5,41 @@
 90 % intervals follow from Student's t for the unknowns of the fit, or from a profile of the likelihood.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import stats
 from scipy.special import expit, logit
 
 from contact import ImpactOscillator
-from studies.measurement.identify.descent import SEEN, Found
-from studies.measurement.identify.displacement import SENSOR
-from studies.measurement.identify.problem import MOST, SETTLED, Problem, chance_of
-from studies.measurement.identify.profiles import Walk
-from studies.measurement.identify.records import NoAnswer, Record, Undetermined
+from studies.measurement.identify.fit.descent import SEEN, Found
+from studies.measurement.identify.fit.problem import MOST, SETTLED, Problem, chance_of
+from studies.measurement.identify.fit.profiles import Walk
+from studies.measurement.identify.motion.displacement import SENSOR
+from studies.measurement.identify.record.records import Array, NoAnswer, Record, Undetermined
 from studies.physics.parameters import parameters_of
 
-Array = NDArray[np.float64]
-
-LEVEL = 0.90
-"""Probability of the intervals."""
-
-TOO_SMALL = 1e-3
-"""Probability of such residuals from noise alone, below which the model is called too small."""
-
-OPEN = ("stiffness",)
-"""What may have no end: a record may only show that a stop is harder, or softer, than a bound."""
-
-SIZES = {"restitution": 0.5, "phase": 1.0, "offset": math.inf}
-"""Least size of a number that an error is compared with: some may be zero."""
-
-PART, LOST, LONGEST = 0.3, 2.0, 300.0
-"""Part of the largest from which a parameter takes part in a direction that is not determined; standard error
-of a logarithm above which its parameter is not determined; logarithm of the longest interval."""
+LEVEL = 0.90  # probability of the intervals
+TOO_SMALL = 1e-3  # probability of such residuals from noise alone, below which the model is too small
+OPEN = ("stiffness",)  # may have no end: a record may only show that a stop is harder than a bound
+SIZES = {"restitution": 0.5, "phase": 1.0, "offset": math.inf}  # least sizes; some values may be zero
+PART = 0.3  # of the largest, from which a parameter takes part in a direction that is not determined
+LOST = 2.0  # standard error of a logarithm above which its parameter is not determined
+LONGEST = 300.0  # logarithm of the longest interval
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Fit:
     """A fit; arrays by `names`, parameters and then numbers of the sensor, in SI units.
 
-    `before` has the values before the record was looked at, `start` those at the start of the fit.
-
-    `noise`: standard deviation of x [m], or of an excess in units of its error; `freedom`: rows less
-    unknowns; `residuals`: observed less predicted, shape of the record's `observed`; `chance`: probability of
-    residuals of such size or pattern from noise alone; `left`: fall of chi^2 by a further step, in units of
-    the noise's variance; `problem` and `unknowns`: what was solved; `walks`: the intervals of the parameters
-    along which chi^2 is no parabola, by its profile.
+    `before` has the values before the record was looked at, `start` the ones where the fit began.  `noise` is
+    the standard deviation of x [m], or of an excess in units of its error.  `residuals` are observed less
+    predicted, in the shape of the record's `observed`.  `chance` is the probability of residuals of such
+    size or pattern from noise alone, `left` the fall of chi^2 by a further step in the noise's variance.
+    `problem` and `unknowns` are what was solved.  `walks` has the intervals of the parameters along which
+    chi^2 is no parabola, by its profile.
     """
 
     record: Record
@@ -65,7 +51,6 @@ class Fit:
     covariance: Array
     noise: float
     noise_known: bool
-    freedom: int
     residuals: Array
     chance: float
     left: float
@@ -112,7 +97,7 @@ class Fit:
     def reach(self) -> float:
         """Half a 90 % interval in standard errors, by Student's t; the normal law's if noise is known."""
         tail = 0.5 + 0.5 * LEVEL
-        return float(stats.norm.ppf(tail) if self.noise_known else stats.t.ppf(tail, self.freedom))
+        return float(stats.norm.ppf(tail) if self.noise_known else stats.t.ppf(tail, self.problem.freedom))
 
     def intervals(self) -> Array:
         """Lower and upper ends, shape (n, 2), within the physical range.
@@ -160,7 +145,6 @@ def judged(problem: Problem, found: Found, oscillator: ImpactOscillator, known: 
         covariance=covariance,
         noise=spread * problem.noise,
         noise_known=known,
-        freedom=problem.freedom,
         residuals=(-found.fun[:rows] / problem.weights).reshape(prediction.record.observed.shape),
         chance=chance,
         left=found.left / spread**2,
@@ -172,9 +156,8 @@ def judged(problem: Problem, found: Found, oscillator: ImpactOscillator, known: 
 def determined(found: Fit) -> Fit:
     """The fit; NoAnswer if the error of a parameter is above its value, or if it has not settled."""
     sizes = np.array([SIZES.get(name, 0.0) for name in found.names])
-    sizes = np.maximum(np.abs(found.estimate), sizes) * np.where(
-        found.problem.log[found.problem.named], LOST, 1.0
-    )
+    sizes = np.maximum(np.abs(found.estimate), sizes)
+    sizes[found.problem.log[found.problem.named]] *= LOST
     share = found.errors / sizes
     if not found.too_small and not np.all(share <= 1.0):  # else the residuals say so
         axes = np.linalg.eigh(found.covariance / np.outer(sizes, sizes))[1].T
@@ -192,4 +175,4 @@ def _blind(axes: Array, names: Sequence[str]) -> str:
     """The parameters of the last axis, which a record cannot separate or determine."""
     share = np.abs(axes[-1])
     blind = [name for name, part in zip(names, share, strict=True) if part > PART * share.max()]
-    return f"tell {' from '.join(blind)}" if len(blind) > 1 else f"determine {blind[0]}"
+    return f"separate {' from '.join(blind)}" if len(blind) > 1 else f"determine {blind[0]}"

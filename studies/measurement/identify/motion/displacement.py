@@ -23,12 +23,11 @@ the same start the tip is at x(t; u), and
 Phi the derivative with respect to the start (``contact.orbits.motion_derivatives``).
 """
 
-from __future__ import annotations
-
 import copy
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,25 +35,16 @@ from numpy.typing import NDArray
 from beam import InvalidValue
 from contact import ImpactKind, ImpactOscillator, State, Trajectory, simulate
 from contact.orbits import motion_derivatives
-from studies.measurement.identify.predictions import Prediction, shapes_changed
-from studies.measurement.identify.records import NoAnswer, Record
+from studies.measurement.identify.motion.predictions import Prediction, shapes_changed
+from studies.measurement.identify.record.records import Array, NoAnswer, Record
 from studies.physics.parameters import changes_of, parameters_of
 
-Array = NDArray[np.float64]
-
-PRIOR = 0.01
-"""Standard deviation of a mode beyond the first at the start of a record, in gaps at the tip."""
-
-CLOSED, STEPS = 1e-10, 12
-"""Last step of Newton's method on an orbit, in gaps at the tip, and the most steps; four are usual."""
-
-FAR, SLOW = 1.0, 0.3
-"""A step of Newton's method that leads nowhere, in gaps at the tip; least gain by a step with derivatives of
-another orbit."""
-
-FEW, GROWTH = 1500, 1.2
-"""Rows with which a search begins; factor by which the rows of a motion that does not repeat grow: in chaos a
-larger one leads to local optima."""
+PRIOR = 0.01  # standard deviation of a mode beyond the first at the start of a record, in gaps at the tip
+CLOSED, STEPS = 1e-10, 12  # last step of Newton's method on an orbit, in gaps at the tip; most steps
+FAR = 1.0  # a step of Newton's method that leads nowhere, in gaps at the tip
+SLOW = 0.3  # least gain by a step with the derivatives of another orbit
+FEW = 1500  # rows with which a search begins
+GROWTH = 1.2  # of the rows of a motion that does not repeat; in chaos more leads to local optima
 
 SENSOR: Mapping[str, float] = {"phase": 0.0, "offset": 0.0, "scale": 1.0}
 """The numbers of a sensor, each with its value where it is not fitted: the phase of the drive at time zero
@@ -121,7 +111,7 @@ class Displacement(Prediction):
         self.extra = np.append(self.orbit.state[: own.size], [sensor[name] for name in free])
         self._last: tuple[ImpactOscillator, Array, Trajectory, NDArray[np.int64]] | None = None
 
-    def parts(self) -> Sequence[Prediction]:
+    def parts(self) -> Sequence[Self]:
         """Few rows of an orbit, then all; of other motions more and more rows from the first on."""
         rows = len(self.times)
         if self.period:
@@ -129,13 +119,13 @@ class Displacement(Prediction):
         counts = [int(self.first * GROWTH**k) for k in range(64) if 0 < self.first * GROWTH**k < rows]
         return [*(self.part(slice(count)) for count in counts), self]
 
-    def again(self) -> Displacement:
+    def again(self) -> Self:
         """A copy with a start of its own."""
         found = copy.copy(self)
         found.orbit = copy.copy(self.orbit)
         return found
 
-    def part(self, rows: slice) -> Displacement:
+    def part(self, rows: slice) -> Self:
         """The prediction of some rows."""
         found = copy.copy(self)
         found.record = replace(self.record, rows=self.record.rows[rows])

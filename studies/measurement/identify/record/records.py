@@ -7,12 +7,10 @@ that begin with # are skipped, but the first two kinds take their drive from `# 
 of v 2 pi f sigma; of an excess the error in the table or the letter's amplitude stability.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Literal
+from typing import Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,9 +23,7 @@ from studies import letter
 Array = NDArray[np.float64]
 Kind = Literal["strobe", "displacement", "transitions"]
 
-READ_OUT = 0.5e-6
-"""Noise of the read-out of synthetic records, and the default unit of residuals [m]."""
-
+READ_OUT = 0.5e-6  # noise of the read-out of synthetic records, and the default unit of residuals [m]
 HEADINGS: dict[tuple[str, ...], Kind] = {
     ("x_m",): "strobe",
     ("x_m", "v_m_per_s"): "strobe",
@@ -36,13 +32,9 @@ HEADINGS: dict[tuple[str, ...], Kind] = {
     ("frequency_hz", "period", "excess", "error"): "transitions",
 }
 NOTES = ("frequency_hz", "amplitude_m")
-
-FEWEST = {"strobe": 4, "displacement": 40, "transitions": 1}
-"""Rows that each kind needs: strobes, rows, transitions."""
-
-LARGEST, LATEST, FAR = 1e6, 1e15, 100.0
-"""Largest size of a number, in the unit of its column, and of a time [s]; first stamp over the span of the
-record above which times begin at the first row."""
+FEWEST = {"strobe": 4, "displacement": 40, "transitions": 1}  # rows that each kind needs
+LARGEST, LATEST = 1e6, 1e15  # largest size of a number, in the unit of its column, and of a time [s]
+FAR = 100.0  # first stamp over the span of the record, above which times begin at the first row
 
 
 class NoAnswer(ContactError):
@@ -91,7 +83,7 @@ class Record:
         each = [1.0, 2.0 * math.pi * (self.frequency or 1.0)][: self.observed.shape[1]]
         return np.broadcast_to(noise * np.array(each), self.observed.shape)
 
-    def noisy(self, seed: int, noise: float = READ_OUT) -> Record:
+    def noisy(self, seed: int, noise: float = READ_OUT) -> Self:
         """The record with normal noise on what is observed, standard deviations as in `units`."""
         found = replace(self, rows=self.rows.copy())
         random = np.random.default_rng(seed)
@@ -130,9 +122,8 @@ def read_record(path: Path) -> Record:
     for i, row in enumerate((line.split(",") for line in kept[1:]), 1):
         if len(row) != len(heading):
             raise InvalidValue(f"row {i} of {path} has {len(row)} cells, the heading {len(heading)}")
-        numbers += [
-            _number(cell, f"{name} in row {i}", path) for name, cell in zip(heading, row, strict=True)
-        ]
+        cells = zip(heading, row, strict=True)
+        numbers += [_number(cell, f"{name} in row {i}", path) for name, cell in cells]
     rows = np.array(numbers, dtype=float).reshape(-1, len(heading))
     record = Record(columns=heading, rows=rows, frequency=notes.get(NOTES[0]), amplitude=notes.get(NOTES[1]))
     _check(record, path)

@@ -1,68 +1,42 @@
-"""Start values of a fit, from the record.
+"""Start values of a fit, of a settled motion.
 
-Strobe points: of the orbits p_m of the given oscillator, m the repetition of the record, the one at the
-record's drive; where there is none, or none like the record, parameters and approach speed are fitted
-together, the drive amplitude allowed to be a little off, until one is close.
+Strobe points: they repeat after m rows.  The start is the orbit p_m of the given oscillator at the record's
+drive.  If there is none, or none like the record, parameters and approach speed are fitted together until an
+orbit is close.  The drive amplitude may then be a little off.
 
-Displacement: the kicked motion that is most like it (`studies.measurement.identify.kicks`) gives free period,
-decay rate, amplitude, phase, gap, restitution, the offset and the sign of the sensor, and the state at the
-first row. It does not show the stiffness or the delay of a contact: several values are tried.
+Displacement: the kicked motion that is most like it (``record.kicks``) gives free period, decay rate,
+amplitude, phase, gap, restitution, the offset and the sign of the sensor, and the state at the first row.  It
+does not show the stiffness or the delay of a contact, of which several values are tried.
 """
-
-from __future__ import annotations
 
 import math
 from collections.abc import Sequence
 from contextlib import suppress
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
 from beam import Refusal
 from contact import ContactError, ImpactOscillator, SingleImpactOrbit, State, simulate
-from studies.measurement.identify.displacement import SENSOR, Displacement
-from studies.measurement.identify.kicks import Kicked, kicked_motions
-from studies.measurement.identify.predictions import Prediction, Strobes, Transitions, family_of
-from studies.measurement.identify.records import NoAnswer, Record
-from studies.measurement.identify.soundness import require_strobe_units, require_units
+from studies.measurement.identify.motion.displacement import SENSOR, Displacement
+from studies.measurement.identify.motion.predictions import Prediction, Strobes, Transitions, family_of
+from studies.measurement.identify.record.kicks import Kicked, kicked_motions
+from studies.measurement.identify.record.records import Array, NoAnswer, Record
+from studies.measurement.identify.record.soundness import require_strobe_units, require_units
 from studies.physics.parameters import parameters_of, with_values
 
-Array = NDArray[np.float64]
-
-LONGEST = 64
-"""Longest period of an orbit that is looked for [drive periods]."""
-
-ALIKE = 3.0
-"""A record repeats after m rows if rows m apart differ by no more than this times the least difference."""
-
-FLAT = 1e-3
-"""Scatter over size of strobe points that are one and the same."""
-
-CLOSE = 0.01
-"""A start whose residuals are below this part of the record's own size needs no search."""
-
-SIMILAR, TRIED, WORSE = 0.1, 6, 30.0
-"""The same at which a search has failed; starts that are searched from; least chi^2 of a kicked motion over
-that of the best at which it is left out."""
-
-SPEEDS = np.geomspace(0.01, 0.5, 12)
-"""Approach speeds that a search begins with, in units of 2 pi f gap."""
-
-SEEN = 40.0
-"""By how much kicks must lower chi^2 of the harmonics: noise alone gives 25 once in a thousand records."""
-
-FACTORS = (0.1, 10.0, 0.3, 3.0, 0.03, 30.0)
-"""Values of what a kick does not tell of a contact, over the given one."""
-
-RESTITUTIONS = (0.1, 0.3, 0.6, 0.9)
-"""Restitutions that are tried beside the ones of the record and the scene."""
-
-ASIDE = (0.97, 0.99, 0.997, 0.999, 1.001, 1.003, 1.01, 1.03)
-"""Factors of gap or amplitude that are tried where no orbit closes: near its fold it may lack by little."""
-
-LOOKED = 200
-"""Times of an orbit at which the tip may be farthest from the stop, where its state begins."""
+LONGEST = 64  # period of an orbit that is looked for [drive periods]
+ALIKE = 3.0  # a record repeats after m rows if their difference is below this times the least one
+FLAT = 1e-3  # scatter over size of strobe points that are one and the same
+CLOSE = 0.01  # part of the record's size below which residuals of a start need no search
+SIMILAR = 0.1  # the same above which a search has failed
+SPEEDS = np.geomspace(0.01, 0.5, 12)  # approach speeds of first orbits, in units of 2 pi f gap
+SEEN = 40.0  # fall of chi^2 by kicks: noise alone gives 25 once in a thousand records
+TRIED, WORSE = 6, 30.0  # kicked motions that are tried; ratio of chi^2 to the best one's at most
+FACTORS = (0.1, 10.0, 0.3, 3.0, 0.03, 30.0)  # on numbers of a contact that no kick shows
+RESTITUTIONS = (0.1, 0.3, 0.6, 0.9)  # tried beside the ones of the record and the scene
+ASIDE = (0.97, 0.99, 0.997, 0.999, 1.001, 1.003, 1.01, 1.03)  # on gap or amplitude where no orbit closes
+LOOKED = 200  # times of an orbit at which the tip may be farthest from the stop, where its state begins
 
 
 def predictions_of(
@@ -73,8 +47,7 @@ def predictions_of(
 ) -> Sequence[tuple[Prediction, ImpactOscillator]]:
     """Predictions of the rows and the starts of their fits, the best first; NoAnswer for a poor record.
 
-    There are none of a displacement without impacts.
-    `free` are the numbers of the sensor that are fitted to a displacement.
+    `free` are the numbers of the sensor that are fitted to a displacement.  One without impacts has no start.
     """
     if record.kind == "transitions":
         return [(Transitions(record), oscillator)]
@@ -84,7 +57,7 @@ def predictions_of(
     return _displacement(record, oscillator, names, free)
 
 
-def repetition(record: Record) -> int:
+def strobe_period(record: Record) -> int:
     """The period of strobe points in drive periods; NoAnswer if they do not repeat or have no impact."""
     rows = record.observed[:, 0]
     most = min(LONGEST, len(rows) // 2)
@@ -93,9 +66,8 @@ def repetition(record: Record) -> int:
     if rows.std() < FLAT * np.abs(rows).max():
         raise NoAnswer("the strobe points stay where they are: there is no impact in the record")
     if off[period - 1] > SIMILAR * rows.std():
-        raise NoAnswer(
-            f"the record is too short, or its strobe points do not repeat: no period up to {most} rows"
-        )
+        why = "the record is too short, or its strobe points do not repeat"
+        raise NoAnswer(f"{why}: no period up to {most} rows")
     if period == 1:
         raise NoAnswer("the strobe points repeat after one drive period: no sign of an impact")
     return period
@@ -104,9 +76,9 @@ def repetition(record: Record) -> int:
 def _strobes(
     record: Record, oscillator: ImpactOscillator, names: Sequence[str]
 ) -> tuple[Strobes, ImpactOscillator]:
-    period, size = repetition(record), float(record.observed[:, 0].std())
-    if (told := period * record.observed.shape[1]) < len(names):
-        raise NoAnswer(f"p{period} gives {told} numbers, which cannot tell {len(names)} parameters")
+    period, size = strobe_period(record), float(record.observed[:, 0].std())
+    if (count := period * record.observed.shape[1]) < len(names):
+        raise NoAnswer(f"p{period} gives {count} numbers, too few for {len(names)} parameters")
 
     def near(at: ImpactOscillator, most: float) -> Strobes | None:
         """The orbit at the drive of this oscillator, if it is off by less than this part of the record."""
@@ -126,10 +98,8 @@ def _strobes(
         begun = orbit.oscillator if "amplitude" in names else begun
         found = near(begun, SIMILAR)
     if found is None:
-        raise NoAnswer(
-            f"no p{period} with one impact was found near the record: give better values of what is not "
-            "fitted, or fit more"
-        )
+        advice = "give better values of what is not fitted, or fit more"
+        raise NoAnswer(f"no p{period} with one impact was found near the record: {advice}")
     return found, begun
 
 
@@ -179,11 +149,8 @@ def _displacement(
     period = {"free_period": parameters_of(at)["free_period"].value}
     require_units(record, oscillator, period if "scale" in free else lengths | period)
     likely = [one for one in likely if one.cost < WORSE * likely[0].cost + SEEN][:TRIED]
-    return [
-        one
-        for i, motion in enumerate(likely)
-        for one in starts_at(record, motion, oscillator, names, free, few=i > 0)
-    ]
+    starts = [starts_at(record, motion, oscillator, names, free, i > 0) for i, motion in enumerate(likely)]
+    return [one for each in starts for one in each]
 
 
 def starts_at(
@@ -199,15 +166,14 @@ def starts_at(
     at, read = motion.oscillator, motion.reading()
     sign, read["restitution"] = read["sign"], min(max(read["restitution"], 0.01), 0.99)
     known = parameters_of(oscillator)
-    drive = 2j * motion.steady * sign / at.tip_response()
+    drive = complex(2j * motion.steady * sign / at.tip_response())
     held = [name for name in ("gap", "amplitude") if name not in names and "scale" in free]
     size = ({"gap": read["gap"], "amplitude": abs(drive)}[held[0]] / known[held[0]].value) if held else 1.0
-    read["gap"], drive = read["gap"] / size, drive / size
-    phase = float(np.angle(drive))
-    told = {name: one.value for name, one in parameters_of(at).items()} | read | {"amplitude": abs(drive)}
+    read |= {"gap": read["gap"] / size, "amplitude": abs(drive / size)}
+    shown = {name: one.value for name, one in parameters_of(at).items()} | read
     soft = [name for name in ("stiffness", "delay") if name in names]
-    sensor = dict(SENSOR) | {"offset": motion.offset, "phase": phase, "scale": sign * size}
-    sensor = {name: sensor[name] if name in free or name == "scale" else SENSOR[name] for name in sensor}
+    sensor = {"offset": motion.offset, "phase": float(np.angle(drive)), "scale": sign * size}
+    sensor = {name: sensor[name] if name in (*free, "scale") else one for name, one in SENSOR.items()}
     lasting = motion.period * at.period
     clock = np.linspace(0.0, lasting, LOOKED, endpoint=False)
     away = sensor["phase"] / at.driven.angular_frequency
@@ -215,7 +181,8 @@ def starts_at(
     lowest = float(clock[int(np.argmin(heights))])
     start = sign / size * np.add(*motion.state(lowest - away))
     law = {name: known[name].value for name in ("restitution", *soft) if name in names}
-    begun = with_values(oscillator, {n: told[n] for n in names if n in told and n in known and n not in soft})
+    own = {name for name in names if name in known and name not in soft}
+    begun = with_values(oscillator, {name: value for name, value in shown.items() if name in own})
     others: list[dict[str, float]] = [{}, law]
     if soft:
         others = [law, *({soft[0]: law[soft[0]] * factor} for factor in FACTORS[: 2 if few else None])]

@@ -1,7 +1,5 @@
 """Lines of a record: harmonics of an orbit, possible drive frequencies, and its repetition."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -9,21 +7,17 @@ from numpy.typing import NDArray
 from scipy.fft import next_fast_len, rfft
 from scipy.signal import detrend, find_peaks
 
-Array = NDArray[np.float64]
+from studies.measurement.identify.record.records import Array
+
 Complex = NDArray[np.complex128]
 
-MOST_HARMONICS, LONGEST = 90, 12
-"""Harmonics of an orbit and its drive periods at most."""
-
-SAME, NEAR = 1.3, 3e-3
-"""An orbit leaves at most so much of the least scatter; part by which a given drive frequency may be off."""
-
-LINES, DRIVES, HIGH, ENOUGH = 6, 4, 0.05, 1500
-"""Lines of the spectrum that give an orbit, harmonics of it that may be the drive, their least part of the
-highest; rows that show whether a record repeats."""
-
-ROUND = 1e-11
-"""Part by which the diagonal of normal equations is raised: harmonics that the rows do not show are small."""
+MOST_HARMONICS, LONGEST = 90, 12  # harmonics of an orbit and its drive periods at most
+SAME = 1.3  # an orbit leaves at most so much of the least scatter
+NEAR = 3e-3  # part by which a given drive frequency may be off
+LINES, DRIVES = 6, 4  # lines of the spectrum that give an orbit; harmonics of it that may be the drive
+HIGH = 0.05  # least part of the highest harmonic that one of the drive has
+ENOUGH = 1500  # rows that show whether a record repeats
+ROUND = 1e-11  # relative addition to the diagonal of normal equations: unseen harmonics are small
 
 
 def peaks(times: Array, values: Array) -> tuple[Array, Array]:
@@ -40,9 +34,9 @@ def peaks(times: Array, values: Array) -> tuple[Array, Array]:
     return (at + np.clip(moved, -1.0, 1.0)) * (rows - 1) / (span * size), np.exp(middle - middle[0])
 
 
-def harmonics(times: Array, values: Array, pace: float, count: int) -> tuple[Complex, float]:
-    """Y_0 to Y_count of the base frequency `pace` [Hz], and the standard deviation of what they leave."""
-    turn = np.exp(2j * math.pi * pace * times)
+def harmonics(times: Array, values: Array, base: float, count: int) -> tuple[Complex, float]:
+    """Y_0 to Y_count of the base frequency `base` [Hz], and the standard deviation of what they leave."""
+    turn = np.exp(2j * math.pi * base * times)
     waves = np.multiply.accumulate(np.broadcast_to(turn, (count, times.size)), axis=0)
     matrix = np.vstack([np.ones(times.size), waves.real, waves.imag])
     normal, moments = matrix @ matrix.T, matrix @ values
@@ -53,17 +47,17 @@ def harmonics(times: Array, values: Array, pace: float, count: int) -> tuple[Com
     return np.append(found[0] + 0j, coefficients), math.sqrt(float(rest @ rest) / spare)
 
 
-def count_of(times: Array, pace: float) -> int:
-    """How many harmonics of `pace` [Hz] the rows resolve, within `MOST_HARMONICS`."""
+def count_of(times: Array, base: float) -> int:
+    """How many harmonics of `base` [Hz] the rows resolve, within `MOST_HARMONICS`."""
     rate = (times.size - 1) / (times[-1] - times[0])
-    return max(2, int(min(MOST_HARMONICS, 0.42 * rate / pace, min(times.size, ENOUGH) // 6)))
+    return max(2, int(min(MOST_HARMONICS, 0.42 * rate / base, min(times.size, ENOUGH) // 6)))
 
 
-def orbit_of(times: Array, values: Array, pace: float, most: int = ENOUGH) -> tuple[Complex, float]:
-    """Lines of an orbit that repeats with `pace` [Hz], as far as rows resolve, and what they leave [m]; of so
+def orbit_of(times: Array, values: Array, base: float, most: int = ENOUGH) -> tuple[Complex, float]:
+    """Lines of an orbit that repeats with `base` [Hz], as far as rows resolve, and what they leave [m]; of so
     many rows at most, at random: equal steps hide some lines."""
     rows = np.sort(np.random.default_rng(0).permutation(times.size)[:most])
-    return harmonics(times[rows], values[rows], pace, count_of(times, pace))
+    return harmonics(times[rows], values[rows], base, count_of(times, base))
 
 
 def scatter(times: Array, values: Array, frequency: float) -> Array:
@@ -89,9 +83,9 @@ def drives(times: Array, values: Array, given: float | None) -> list[tuple[float
         near = nearest(given)
         found = near if abs(near / given - 1.0) < NEAR else given
         return [(found, repetition(times, values, found))]
-    paces = [one / m for one in lines[:LINES].tolist() for m in range(1, LONGEST // 2 + 1)]
-    left = np.array([orbit_of(times, values, pace)[1] for pace in paces])
-    base = max(pace for pace, size in zip(paces, left, strict=True) if size < SAME * left.min())
+    tried = [one / m for one in lines[:LINES].tolist() for m in range(1, LONGEST // 2 + 1)]
+    left = np.array([orbit_of(times, values, base)[1] for base in tried])
+    base = max(one for one, size in zip(tried, left, strict=True) if size < SAME * left.min())
     heights = np.abs(harmonics(times, values, base, min(LONGEST, count_of(times, base)))[0][1:])
     likely = [int(m) + 1 for m in np.argsort(-heights)[:DRIVES] if heights[m] > HIGH * heights.max()]
     return [(nearest(m * base), m) for m in likely]

@@ -5,38 +5,29 @@
 A steady motion has A = 0: it gives the modulus of the response, and so one of T, c and the amplitude.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
 from contact import ImpactOscillator
-from studies.measurement.identify.diagnosis import off_neighbours
-from studies.measurement.identify.displacement import SENSOR, Displacement
-from studies.measurement.identify.kicks import poles
-from studies.measurement.identify.records import NoAnswer, Record
-from studies.measurement.identify.spectrum import peaks, scatter
+from studies.measurement.identify.motion.displacement import SENSOR, Displacement
+from studies.measurement.identify.record.kicks import poles
+from studies.measurement.identify.record.records import Array, NoAnswer, Record
+from studies.measurement.identify.record.soundness import off_neighbours
+from studies.measurement.identify.record.spectrum import peaks, scatter
 from studies.physics.parameters import with_values
 
-Array = NDArray[np.float64]
-
-NAMES, RESPONSE = ("free_period", "decay_rate", "amplitude", "frequency"), 3
-"""Parameters that such a motion hangs on; how many of the first do so by the response alone."""
-
-LOGS = -3.0, 3.0
-"""Logarithms by which f, T and c may leave where a search begins."""
-
-FREE, DECAYS, AWAY = np.geomspace(0.5, 2.0, 40), (0.03, 0.1, 0.3), 1e3
-"""Free periods and decay rates that a search begins with, by the drive period; gap by the largest reading."""
-
-SEEN, NOISE, LASTS = 40.0, 2.0, 0.05
-"""Fall of chi^2 by which a free mode is seen, or this motion is better than an orbit; what it may leave over
-the noise between neighbouring rows; decay rate times span of a line that does not decay."""
+NAMES = ("free_period", "decay_rate", "amplitude", "frequency")  # all that such a motion depends on
+RESPONSE = 3  # how many of the first enter by the response alone
+LOGS = -3.0, 3.0  # logarithms by which f, T and c may leave where a search begins
+FREE, DECAYS = np.geomspace(0.5, 2.0, 40), (0.03, 0.1, 0.3)  # first T and c, in drive periods and per period
+AWAY = 1e3  # gap over the largest reading
+SEEN = 40.0  # fall of chi^2 by which a free mode is seen, or this motion is better than an orbit
+NOISE = 2.0  # what this motion may leave over the noise between neighbouring rows
+LASTS = 0.05  # decay rate times span of a line that does not decay
 
 
 class Linear:
@@ -77,10 +68,8 @@ class Linear:
     def require_decay(self, rate: float) -> None:
         """NoAnswer if a free mode with this decay rate [1/s] hardly decays."""
         if self.decays and rate * (self.times[-1] - self.times[0]) < LASTS:
-            tone = (
-                f"a line at {1.0 / self.free_period:.4g} Hz of {1e3 * abs(self.free):.2g} mm does not decay"
-            )
-            raise NoAnswer(f"{tone}: hum, or a free mode that needs a longer record")
+            tone = f"a line at {1.0 / self.free_period:.4g} Hz of {1e3 * abs(self.free):.2g} mm"
+            raise NoAnswer(f"{tone} does not decay: hum, or a free mode that needs a longer record")
 
     def start(
         self, oscillator: ImpactOscillator, names: Sequence[str], free: Sequence[str]
@@ -89,10 +78,10 @@ class Linear:
         kept, lost = ([n for n in names if (n in NAMES) == own] for own in (True, False))
         alike = [name for name in kept if name in NAMES[:RESPONSE]]
         if not kept or (not self.decays and len(alike) > 1):
-            blind = f"{', '.join(alike[:-1])} and {alike[-1]} apart" if kept else ", ".join(lost)
+            blind = f"separate {' from '.join(alike)}" if kept else f"determine {', '.join(lost)}"
             motion = f"{'a' if self.decays else 'a steady'} motion without impacts at {self.frequency:.4g} Hz"
             height = f"of amplitude {1e3 * abs(self.steady):.3g} mm"
-            raise NoAnswer(f"{motion} {height}: it cannot tell {blind}; there is no impact in the record")
+            raise NoAnswer(f"{motion} {height}: it cannot {blind}; there is no impact in the record")
         found = {"frequency": self.frequency, "gap": AWAY * float(np.abs(self.values).max())}
         own = {"free_period": self.free_period, "decay_rate": self.decay_rate} if self.decays else {}
         at = with_values(oscillator, found | {name: own[name] for name in own if name in kept})

@@ -10,29 +10,19 @@ It is taken if |a| is well below |d| and chi^2 falls (M. K. Transtrum and J. P. 
 search ends where a further step would lower chi^2 by less than a given amount, to first order.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from studies.measurement.identify.record.records import Array
 
-AHEAD, BEND = 0.1, 0.75
-"""Part h of a step at which it is tried for its bend; largest 2 |a|/|d|."""
-
-DAMPING, LESS, MORE, STUCK = 1e-3, 0.2, 3.0, 1e12
-"""The damping at first, its factors after a step that is taken and one that is not, and where no step is
-short enough."""
-
-SEEN = 1e-8
-"""Ratio of singular values below which the residuals do not depend on a direction of the unknowns."""
-
-INSIDE = 1e-9
-"""Part of a unit by which a bounded unknown stays off its bound."""
+AHEAD, BEND = 0.1, 0.75  # part h of a step at which it is tried for its bend; largest 2 |a|/|d|
+DAMPING, LESS, MORE = 1e-3, 0.2, 3.0  # at first; factors after a step that is taken and one that is not
+STUCK = 1e12  # damping where no step is short enough
+SEEN = 1e-8  # ratio of singular values below which residuals do not depend on a direction
+INSIDE = 1e-9  # part of a unit by which a bounded unknown stays off its bound
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,25 +45,24 @@ def descend(
     jacobian: Callable[[Array], Array],
     start: Array,
     bounds: Array,
-    *,
     most: int,
-    enough: Callable[[float], float],
+    enough: float,
 ) -> Found:
     """The least sum of squares from `start`, in `most` steps, between `bounds` of shape (2, n).
 
-    Residuals that are not finite reject a step.  `enough` is the fall of chi^2 at which the search ends, from
-    chi^2.
+    Residuals that are not finite reject a step.  The search ends where chi^2 would fall by less than the part
+    `enough` of it.
     """
     low, high = bounds[0] + INSIDE, bounds[1] - INSIDE
     u = np.clip(start, low, high)
     r, damping, scale = residuals(u), DAMPING, np.zeros(u.size)
     j = jacobian(u)
-    for _ in range(most):
+    for count in range(most + 1):
         downhill = -(j.T @ r)
         free = ~(((u <= low) & (downhill < 0.0)) | ((u >= high) & (downhill > 0.0)))
         q, triangle = np.linalg.qr(j[:, free])
         left = _left(triangle, q.T @ r)
-        if left < enough(float(r @ r)):
+        if left < enough * float(r @ r) or count == most:
             break
         scale = np.maximum(scale, np.linalg.norm(j, axis=0))
         taken = None
@@ -100,9 +89,6 @@ def descend(
             break
         (u, r), damping = taken, damping * LESS
         j = jacobian(u)
-    else:
-        q, triangle = np.linalg.qr(j)
-        left = _left(triangle, q.T @ r)
     return Found(u, r, j, left)
 
 

@@ -14,8 +14,6 @@ most of what is left of the Y_k (matching pursuit: Mallat and Zhang, IEEE Trans.
 is averaged over the whole record.  A contact that lasts a while counts as a kick in its middle.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -24,23 +22,19 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from contact import ImpactOscillator
-from studies.measurement.identify.spectrum import Array, Complex, count_of, drives, harmonics
+from studies.measurement.identify.record.spectrum import Array, Complex, count_of, drives, harmonics
 from studies.physics.parameters import parameters_of, with_values
 
-MOST_KICKS = 6
-"""Kicks of an orbit that are looked for at most."""
-
+MOST_KICKS = 6  # of an orbit
 FREE_PERIODS, DECAY_RATES = np.geomspace(0.6, 1.4, 16), np.array([0.03, 0.1, 0.3, 0.7])
 """Where a search begins, in drive periods and per drive period."""
-STARTS, WORTH, LITTLE, APART = 5, 12.0, 0.7, 0.04
-"""First kicks that are followed; what a further kick must take off chi^2, and the part that it may leave if
-another is to follow; drive periods between two kicks."""
-
-VALLEY, LIKE = 50.0, 4
-"""By how much chi^2 of another free period may be above the best; how many others are kept."""
+STARTS = 5  # first kicks that are followed
+WORTH, LITTLE = 12.0, 0.7  # what a further kick takes off chi^2; the part that it may leave if one follows
+APART = 0.04  # drive periods between two kicks
+VALLEY, LIKE = 50.0, 4  # chi^2 of other free periods above the best; how many are kept
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Kicked:
     """A kicked motion: the `oscillator` with its free period, decay rate and drive frequency as fitted.
 
@@ -107,19 +101,19 @@ class Search:
         known, self.leading = parameters_of(oscillator), oscillator.model.leading_mode
         self.given = known["free_period"].value, max(known["decay_rate"].value, 1e-3 / oscillator.period)
         self.oscillator, self.period = with_values(oscillator, {"decay_rate": self.given[1]}), period
-        self.pace = oscillator.driven.frequency / period
-        count = count_of(times, self.pace)
-        self.seen, noise = harmonics(times, values, self.pace, count)
+        self.base = oscillator.driven.frequency / period
+        count = count_of(times, self.base)
+        self.seen, noise = harmonics(times, values, self.base, count)
         self.error = max(noise, 1e-9 * float(np.ptp(values))) / math.sqrt(2.0 * times.size)
         order = np.arange(count + 1)
-        self.used, self.w = (order > 0) & (order != period), 2.0 * math.pi * self.pace * order
+        self.used, self.w = (order > 0) & (order != period), 2.0 * math.pi * self.base * order
 
     def response(self, logs: Sequence[float]) -> Complex:
         """G at the harmonics, of the oscillator with exp(logs) as its free period and decay rate."""
         model, w, (period, rate) = self.oscillator.model, self.w[:, None], np.exp(logs).tolist()
         omega = model.omega * (math.hypot(2.0 * math.pi / period, 0.5 * rate) / model.omega[self.leading])
         rates = model.decay_rate * (rate / model.decay_rate[self.leading])
-        return np.asarray((model.phi**2 / (omega**2 - w**2 + 1j * rates * w)).sum(axis=1) * self.pace)
+        return np.asarray((model.phi**2 / (omega**2 - w**2 + 1j * rates * w)).sum(axis=1) * self.base)
 
     def waves(self, response: Complex, kicks: Array) -> Complex:
         """The harmonics of unit kicks, shape (harmonics, kicks)."""
@@ -127,10 +121,8 @@ class Search:
 
     def impulses(self, waves: Complex) -> Array:
         """The impulses that explain most."""
-        a, b = waves[self.used], self.seen[self.used]
-        return np.asarray(
-            np.linalg.lstsq(np.vstack([a.real, a.imag]), np.append(b.real, b.imag), rcond=None)[0]
-        )
+        a, b = (np.concatenate([one.real, one.imag]) for one in (waves[self.used], self.seen[self.used]))
+        return np.asarray(np.linalg.lstsq(a, b, rcond=None)[0])
 
     def left(self, response: Complex, kicks: Array) -> Complex:
         """What kicks leave of the harmonics."""
@@ -143,7 +135,7 @@ class Search:
         product = np.zeros(size, complex)
         product[: self.w.size] = np.conj(response) * self.left(response, kicks) * self.used
         length = math.sqrt(float(np.sum(np.abs(response[self.used]) ** 2)))
-        return np.arange(size) / (size * self.pace), np.fft.ifft(product).real * size / length
+        return np.arange(size) / (size * self.base), np.fft.ifft(product).real * size / length
 
     def first(self) -> list[tuple[tuple[float, float], Array]]:
         """Logarithms of free period and decay rate, and a first kick: the best of a grid that differ."""
@@ -155,7 +147,7 @@ class Search:
             found.append((abs(float(gains[best])), *logs, float(times[best])))
         kept = list[tuple[float, float, float, float]]()
         for one in sorted(found, reverse=True):
-            turned = [abs(math.sin(math.pi * (one[3] - other[3]) * self.pace)) for other in kept]
+            turned = [abs(math.sin(math.pi * (one[3] - other[3]) * self.base)) for other in kept]
             if all(abs(one[1] - o[1]) > 0.06 or t > 0.05 for o, t in zip(kept, turned, strict=True)):
                 kept.append(one)
         return [((log_t, log_c), np.array([at])) for _, log_t, log_c, at in kept[:STARTS]]
@@ -193,7 +185,7 @@ class Search:
                 break
             response = self.response(logs)
             times, gains = self.gains(response, kicks)
-            apart = np.abs(np.sin(math.pi * self.pace * (times[:, None] - kicks))).min(axis=1)
+            apart = np.abs(np.sin(math.pi * self.base * (times[:, None] - kicks))).min(axis=1)
             way = math.copysign(1.0, self.impulses(self.waves(response, kicks))[0])
             gains = np.where(apart > math.sin(math.pi * APART / self.period), way * gains, -math.inf)
             kicks = np.append(kicks, times[int(np.argmax(gains))])
@@ -220,16 +212,11 @@ class Search:
         waves, (period, rate) = self.waves(self.response(logs), kicks), np.exp(logs).tolist()
         impulses = self.impulses(waves)
         rest = self.seen - waves @ impulses
-        return Kicked(
-            oscillator=with_values(self.oscillator, {"free_period": period, "decay_rate": rate}),
-            period=self.period,
-            kicks=kicks % (1.0 / self.pace),
-            impulses=impulses,
-            steady=complex(rest[self.period]),
-            offset=float(rest[0].real),
-            cost=cost,
-            without=float(np.sum(np.abs(self.seen[self.used]) ** 2)) / self.error**2,
-        )
+        steady, offset = complex(rest[self.period]), float(rest[0].real)
+        without = float(np.sum(np.abs(self.seen[self.used]) ** 2)) / self.error**2
+        at = with_values(self.oscillator, {"free_period": period, "decay_rate": rate})
+        kicks = kicks % (1.0 / self.base)
+        return Kicked(at, self.period, kicks, impulses, steady, offset, cost, without)
 
 
 def kicked_motions(

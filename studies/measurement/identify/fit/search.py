@@ -7,53 +7,38 @@ Where a profile of the likelihood finds a better fit, the search goes on from th
 tried as an orbit; one without impacts as a linear motion; one that does not repeat from its first row on.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from beam import Refusal
 from contact import ContactError, ImpactOscillator
 from studies import letter
-from studies.measurement.identify.descent import Found
-from studies.measurement.identify.diagnosis import added, wanders
-from studies.measurement.identify.linear import Linear
-from studies.measurement.identify.predictions import Prediction
-from studies.measurement.identify.problem import Problem, chance_of
-from studies.measurement.identify.profiles import Point
-from studies.measurement.identify.records import READ_OUT, NoAnswer, Record, Undetermined
-from studies.measurement.identify.result import TOO_SMALL, Fit, determined, judged
-from studies.measurement.identify.soundness import sound
-from studies.measurement.identify.spectrum import repetition
-from studies.measurement.identify.starts import predictions_of
-from studies.measurement.identify.unsteady import unsteady_starts
+from studies.measurement.identify.fit.descent import Found
+from studies.measurement.identify.fit.problem import Problem, chance_of
+from studies.measurement.identify.fit.profiles import Point
+from studies.measurement.identify.fit.result import TOO_SMALL, Fit, determined, judged
+from studies.measurement.identify.motion.linear import Linear
+from studies.measurement.identify.motion.predictions import Prediction
+from studies.measurement.identify.motion.starts import predictions_of
+from studies.measurement.identify.motion.unsteady import unsteady_starts
+from studies.measurement.identify.record.records import READ_OUT, Array, NoAnswer, Record, Undetermined
+from studies.measurement.identify.record.residuals import added, wanders
+from studies.measurement.identify.record.soundness import sound
+from studies.measurement.identify.record.spectrum import repetition
 from studies.physics.parameters import parameters_of, require_names, with_values
 
-Array = NDArray[np.float64]
-
-LEASH = 1.0
-"""Prior of the parameters while the beginning of a record is fitted, which need not determine all of them."""
-
-EARLY, ROUGH, FINISHED, SAME, ASTRAY = 40, 1e-3, 3, 3e-3, 9.0
-"""Most steps from each start, until chi^2 falls by no more than this part; how many are fitted to the end
-(twice as many if none is like the record); relative difference of values that are the same; growth of chi^2
-by row at which the fit of more and more rows is given up."""
-
-SHORT = 20.0
-"""Drive periods of a motion that are fitted where more are not: chaos forgets its start."""
-
-LOST = 30.0
-"""Error of a parameter over its value at which the record does not depend on it: no profile shows more."""
-
-TONE = 0.7
-"""Part of what does not repeat that a hum must have to be the reason why there is no fit."""
-
-AGAIN, BETTER = 4, 0.2
-"""How often a fit begins again at a better point of a profile, and by how much chi^2 is less there."""
+LEASH = 1.0  # prior of the parameters while few rows are fitted, which need not determine all of them
+EARLY, ROUGH = 40, 1e-3  # most steps from each start, until chi^2 falls by no more than this part
+FINISHED = 3  # starts that are fitted to the end; more if none is like the record
+SAME = 3e-3  # relative difference of values that are the same
+ASTRAY = 9.0  # growth of chi^2 by row at which the fit of more and more rows is given up
+SHORT = 20.0  # drive periods of a motion that are fitted where more are not: chaos forgets its start
+LOST = 30.0  # error of a parameter over its value at which no profile shows more
+TONE = 0.7  # part of what does not repeat that a hum must have to be the reason why there is no fit
+AGAIN, BETTER = 4, 0.2  # fits begun at a better point of a profile; by how much chi^2 is less there
 
 
 def fit(
@@ -87,7 +72,7 @@ def _solved(
     known: bool,
 ) -> Fit:
     """The best fit from these starts; it begins again where a profile finds a better one."""
-    problem, found = _best([Problem(one, at, names, unit) for one, at in starts], known)
+    problem, found = best([Problem(one, at, names, unit) for one, at in starts], known)
     for _ in range(AGAIN):
         result = judged(problem, found, oscillator, known)
         walks, lowest = _walked(result)
@@ -137,8 +122,8 @@ def _displacement(
                 note = f"{words[0]}: the fit is one of a transient or a chaotic motion{rows}"
                 return replace(other, record=replace(other.record, notes=(*record.notes, note)))
     if found is None:
-        pace = linear.frequency / repetition(times, x, linear.frequency)
-        hum = added(times, x, pace, TONE) if 2.0 < pace * (times[-1] - times[0]) else []
+        base = linear.frequency / repetition(times, x, linear.frequency)
+        hum = added(times, x, base, TONE) if 2.0 < base * (times[-1] - times[0]) else []
         reasons = [*hum, str(failure or "no motion like the record's was found")]
         raise NoAnswer("; ".join(reasons))
     return found
@@ -154,26 +139,20 @@ def _walked(found: Fit) -> tuple[dict[str, tuple[float, float]], Point | None]:
         walk = found.walk(name)
         if walk.bent(found.reach):
             sides = [walk.side(way * found.reach) for way in (-1.0, 1.0)]
-            lowest = min(
-                (point for points, _ in sides for point in points),
-                key=lambda one: one.rise,
-                default=walk.best,
-            )
+            lowest = min([*sides[0][0], *sides[1][0], walk.best], key=lambda point: point.rise)
             if lowest.rise < -BETTER:
                 return walks, lowest
             walks[name] = sides[0][1], sides[1][1]
     return walks, None
 
 
-def _best(problems: Sequence[Problem], known: bool) -> tuple[Problem, Found]:
+def best(problems: Sequence[Problem], known: bool) -> tuple[Problem, Found]:
     """The problem that is solved best, and its solution: all are begun, the best that differ are finished."""
     if not problems:
         raise NoAnswer("no motion like the record's was found to start from")
-    rows = problems[0].observed.size
-    if rows < problems[0].unknowns + (not known):
-        raise NoAnswer(
-            f"the record has {rows} numbers, too short for {problems[0].unknowns} unknowns and their errors"
-        )
+    rows, count = problems[0].observed.size, problems[0].unknowns
+    if rows < count + (not known):
+        raise NoAnswer(f"the record has {rows} numbers, too short for {count} unknowns and their errors")
     failure, begun = None, list[tuple[float, int, Array]]()
     for i, problem in enumerate(problems):
         first = _part(problem, 0)
