@@ -18,6 +18,9 @@ FREE_PERIOD_S, FREE_PERIOD_ERROR_S = 40.80e-3, 0.02e-3
 PERIODS = MappingProxyType({20.90: 3, 21.50: 4, 22.20: 5, 22.60: 6, 23.05: 8, 23.40: 10})
 """Fig. 2: drive frequency [Hz] -> m of the transition p1 <-> pm."""
 
+TRANSITION_HZ = MappingProxyType({m: frequency for frequency, m in PERIODS.items()})
+"""The same the other way round: m -> drive frequency [Hz]."""
+
 RESTITUTION = 0.1
 """Text: "estimated to be tau ~ 0.1"."""
 

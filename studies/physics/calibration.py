@@ -196,10 +196,10 @@ class Targets:
 
     free_period_s: float
     decay_rate_per_s: float
-    grazing_amplitude_m: float = 2e-3
+    grazing_amplitude_m: float = letter.DRIVE_AMPLITUDE_M
     kick: float = 1.0
-    frequency_hz: float = 22.2
-    excess: float = 0.013
+    frequency_hz: float = letter.TRANSITION_HZ[5]
+    excess: float = letter.TIME_TRACE_EXCESS
 
     @classmethod
     def of(cls, scene: Scene) -> Targets:
@@ -208,7 +208,6 @@ class Targets:
         return cls(
             free_period_s=keys.free_period_s,
             decay_rate_per_s=keys.decay_rate_per_s,
-            grazing_amplitude_m=letter.DRIVE_AMPLITUDE_M,
             frequency_hz=middle_of(scene),
         )
 

@@ -25,7 +25,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beam import InvalidValue, ModalModel, Refusal
-from contact import ContactError, StrobedMap, StroboscopicMap
+from contact import (
+    ContactError,
+    ImpactOscillator,
+    MaximalFamily,
+    SingleImpactOrbit,
+    StrobedMap,
+    StroboscopicMap,
+)
 from contact.orbits import (
     KickFamily,
     OrbitDiagram,
@@ -79,6 +86,11 @@ def fold_at(
     return fold_of_kicks(KickFamily(oscillator=beam, period=period)) if period > 1 else None
 
 
+def fold_orbit(oscillator: ImpactOscillator, period: int) -> SingleImpactOrbit | None:
+    """The orbit p_m, m = `period`, at its fold under Newton's law, in closed form; None if there is none."""
+    return MaximalFamily.from_oscillator(oscillator, period=period).fold()
+
+
 def kick_fold(strobed: StroboscopicMap, period: int) -> float | None:
     """The fold of p_m by the kick that a collision gives all modes, without simulation of the orbit."""
     found = KickFamily(oscillator=strobed.oscillator, period=period).fold() if period > 1 else None
@@ -91,14 +103,32 @@ def observe(strobed: Strobed, points: NDArray[np.float64]) -> NDArray[np.float64
 
 
 def up_and_down(strobed: Strobed, excesses: NDArray[np.float64], **settings: Any) -> dict[str, Diagram]:
-    """The upward scan from the motion without impacts, and the downward scan from where that ends.
+    """The orbit diagrams of `both_ways`.
 
     `settings` are options of `contact.orbits.orbit_diagram`; by default it observes as `observe` does.
     """
     settings = {"observe": partial(observe, strobed), **settings}
-    quiet = strobed.at(float(excesses[0]) if excesses[0] < 0.0 else BELOW).steady()
-    up = orbit_diagram(strobed, excesses, quiet, **settings)
-    return {"up": up, "down": orbit_diagram(strobed, excesses[::-1], up.end, **settings)}
+
+    def scan(_way: str, values: NDArray[np.float64], state: Any) -> tuple[Diagram, Any]:
+        found = orbit_diagram(strobed, values, state, **settings)
+        return found, found.end
+
+    return both_ways(strobed, excesses, scan)
+
+
+def both_ways(
+    strobed: Strobed,
+    excesses: NDArray[np.float64],
+    scan: Callable[[str, NDArray[np.float64], Any], tuple[T, Any]],
+) -> dict[str, T]:
+    """The upward scan from the motion without impacts, and the downward scan from where that ends.
+
+    `scan(way, excesses, state)`, `way` "up" or "down", returns what it found and the state at its end.
+    """
+    state, found = strobed.at(float(excesses[0]) if excesses[0] < 0.0 else BELOW).steady(), dict[str, T]()
+    for way, values in (("up", excesses), ("down", excesses[::-1])):
+        found[way], state = scan(way, values, state)
+    return found
 
 
 @dataclass(frozen=True)

@@ -12,13 +12,14 @@ from oscillators import modes_on_stop, newton
 import contact
 from contact import ContactLaw, HertzContact, LinearContact, Stop, before_collision, first_collision, simulate
 from contact.integrators import CentralDifference, Exact
+from studies.letter import TIME_TRACE_EXCESS
 from studies.methods.peers import missing_solvers
 from studies.methods.work_precision import gradients
 from studies.methods.work_precision.costs import heyoka_orbit
 from studies.methods.work_precision.measures import Reference, missed_share, reference_of, rows_of
 from studies.methods.work_precision.methods import EXACT, STEPPED, Setting, Sweep, sweeps_for
 from studies.methods.work_precision.methods import STEPS as STEPS_OF
-from studies.methods.work_precision.problems import EXCESS, Problem, driven_problem, hertz_beam, linear_beam
+from studies.methods.work_precision.problems import Problem, driven_problem, hertz_beam, linear_beam
 from studies.methods.work_precision.reference import extended_motion
 from studies.methods.work_precision.timing import in_turns
 from studies.shell.scene import read_scene, single_mode_at
@@ -102,7 +103,7 @@ def test_errors_fall_with_the_square_of_the_step(label: str) -> None:
 def test_linear_contact_lasts_as_long_as_that_of_hertz() -> None:
     oscillator, hertz = linear_beam(FEW_MODES), hertz_beam(FEW_MODES)
     assert isinstance(oscillator.stop.law, LinearContact)
-    assert oscillator.excess == pytest.approx(EXCESS, rel=1e-9)
+    assert oscillator.excess == pytest.approx(TIME_TRACE_EXCESS, rel=1e-9)
     wanted = first_collision(hertz).contact_time
     assert first_collision(oscillator).contact_time == pytest.approx(wanted, rel=1e-11)
 

@@ -15,11 +15,11 @@ from typing import Annotated
 import numpy as np
 
 from beam import ModalModel
-from contact import HarmonicDrive, ImpactOscillator, MaximalFamily, Stop, StroboscopicMap
+from contact import HarmonicDrive, ImpactOscillator, Stop, StroboscopicMap
 from contact.orbits import Shooting, born, born_period, fold_excess, orbit_diagram
 from studies import letter
 from studies.physics.calibration import calibrate, calibrate_thickness
-from studies.physics.descriptions import Diagram, or_none, up_and_down
+from studies.physics.descriptions import Diagram, fold_orbit, or_none, up_and_down
 from studies.shell.scene import Scene, SceneError, contact_law_of, harmonic, model_of, single_mode_of
 
 FREQUENCY_HZ, FREE_PERIOD_S = letter.BREAKDOWN["frequency_hz"], letter.BREAKDOWN["free_period_s"]
@@ -195,7 +195,7 @@ def island(scene: Scene, restitution: float, *, step: float = ISLAND_STEP) -> tu
     grazing.
     """
     strobed = single_mode(scene, restitution).strobed()
-    fold = MaximalFamily.from_oscillator(strobed.oscillator, period=3).fold()
+    fold = fold_orbit(strobed.oscillator, 3)
     assert fold is not None  # f T lies in the band of p3
     orbit = Shooting(oscillator=strobed.oscillator, period=3).at_speed(1.02 * fold.speed)
     whole = orbit_diagram(

@@ -24,8 +24,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beam import InvalidValue
-from contact import Band, ImpactOscillator, MaximalFamily
+from contact import Band, ImpactOscillator
 from contact.orbits import AmplitudeScan, PeriodicOrbit, Shooting, fold_along_frequency
+from studies.physics.descriptions import fold_orbit
 from studies.shell.options import MOST_CELLS
 from studies.shell.scene import Scene, band_of
 from studies.shell.sweep import Column
@@ -120,7 +121,7 @@ def folds_of_single_mode(oscillator: ImpactOscillator, frequencies: np.ndarray, 
     for frequency in frequencies.tolist():
         here = _driven(oscillator, frequency)
         for period in range(2, LARGEST + 1):
-            fold = MaximalFamily.from_oscillator(here, period=period).fold()
+            fold = fold_orbit(here, period)
             if fold is not None and fold.excess > lowest and fold.admissible:
                 found.append(Fold(period=period, frequency_hz=frequency, excess=fold.excess))
     return found

@@ -20,7 +20,7 @@ import numpy as np
 
 from contact import ContactError, State, StroboscopicMap
 from contact.orbits import Exponents, Settled, born, map_exponents, orbit_exponents, settle
-from studies.physics.descriptions import TITLES
+from studies.physics.descriptions import TITLES, both_ways
 from studies.shell.scene import READOUT, Scene, single_mode_at
 
 CUT, QUICK_CUT = (np.linspace(-0.016, 0.06, 39), 600), (np.linspace(-0.016, 0.06, 11), 100)
@@ -70,25 +70,27 @@ def carried(
 
     On the way up a motion stays without impacts as far as it can, on the way down it stays on p_m.
     """
-    name, strobed = named
-    rows, points, failures = [], [], []
-    state = strobed.at(float(values[0])).steady()
-    places = [("up", e) for e in values.tolist()] + [("down", e) for e in values[::-1].tolist()]
-    for direction, excess in places:
-        here = strobed.at(excess)
-        try:
-            settled = settle(here, state, most_cycles=scene.scan.settle_cycles)
-            state = replace(settled.end, time=0.0)
-            orbit = here.orbit(state, scene.scan.record_cycles)
-            kind, exponents = kind_of(here, settled, cycles)
-        except ContactError as error:
-            failures.append(f"{TITLES[name]}, excess {excess:.6g}, {direction}: {error}")
-            continue
-        points.append(here.readout(orbit.points, READOUT))
-        impacts = settled.impacts if settled.period else 0
-        found: dict[str, Any] = {"period": settled.period, "impacts": impacts}
-        found |= {"lyapunov_map": exponents.largest, "error_map": exponents.error}
-        rows.append(Settlement(model=name, direction=direction, excess=excess, kind=kind, **found))
+    (name, strobed), rows, points, failures = named, list[Settlement](), list[np.ndarray](), list[str]()
+
+    def scan(direction: str, excesses: np.ndarray, state: State) -> tuple[None, State]:
+        for excess in excesses.tolist():
+            here = strobed.at(excess)
+            try:
+                settled = settle(here, state, most_cycles=scene.scan.settle_cycles)
+                state = replace(settled.end, time=0.0)
+                orbit = here.orbit(state, scene.scan.record_cycles)
+                kind, exponents = kind_of(here, settled, cycles)
+            except ContactError as error:
+                failures.append(f"{TITLES[name]}, excess {excess:.6g}, {direction}: {error}")
+                continue
+            points.append(here.readout(orbit.points, READOUT))
+            impacts = settled.impacts if settled.period else 0
+            found: dict[str, Any] = {"period": settled.period, "impacts": impacts}
+            found |= {"lyapunov_map": exponents.largest, "error_map": exponents.error}
+            rows.append(Settlement(model=name, direction=direction, excess=excess, kind=kind, **found))
+        return None, state
+
+    both_ways(strobed, values, scan)
     return rows, points, failures
 
 

@@ -41,7 +41,6 @@ from studies.experiment.effective_impact.model import (
     select,
     series_of,
 )
-from studies.physics.calibration import Targets
 from studies.shell.digits import written
 from studies.shell.run import Verdict
 from studies.shell.scene import Scene, SceneError, harmonic
@@ -68,7 +67,7 @@ def effective_impact(scene: Scene, run: Run) -> Mapping[str, object]:
             "spring.kind modal_data has no tip mass to vary: this study needs a spring that is drawn"
         )
     every, modes = QUICK if run.quick else FULL
-    frequency = min(scene.drive.frequencies_hz, key=lambda f: abs(f - Targets.frequency_hz))
+    frequency = min(scene.drive.frequencies_hz, key=lambda f: abs(f - letter.TRANSITION_HZ[5]))
     fine = scene
     if not (scene.spring.elements_per_leg or scene.spring.elements_on_arc):
         fine = scene.replace(FINE_MESH)

@@ -38,10 +38,10 @@ from studies.shell.options import Within
 from studies.shell.scene import Scene, SceneError, harmonic, single_mode_at
 from studies.shell.study import Run, study
 
-SHOWN_HZ = 22.2
+SHOWN_HZ = letter.TRANSITION_HZ[5]
 """Frequency of the curves and of the beam, or the one of the scene nearest to it."""
 
-QUICK_HZ = (22.2, 22.6)
+QUICK_HZ = (SHOWN_HZ, letter.TRANSITION_HZ[6])
 UNSEEN = 1e-9
 """A loss of stability below this excess counts as one at grazing, as at a hard wall."""
 

@@ -24,7 +24,7 @@ from functools import partial
 from typing import Annotated
 
 from studies.experiment.transitions.model import AtFrequency, Scans, Transition, rows_at, scans
-from studies.letter import FREE_PERIOD_S
+from studies.letter import FREE_PERIOD_S, TRANSITION_HZ
 from studies.physics.descriptions import TITLES, StrobePoint, strobe_points_of, word, words
 from studies.physics.two_parameters import Extracted
 from studies.shell.digits import written
@@ -132,7 +132,11 @@ def judge(run: Run, rows: Sequence[Transition]) -> bool:
     same, first = [row.period == row.letter for row in rows], rows[0]
     above = {row.description: row.born.get("0.01") for row in rows}
     note = "" if all(same) else f"at excess 0.01: {words(above)}"
-    if note and first.frequency_hz == 23.40 and run.scene.single_mode.free_period_s == FREE_PERIOD_S:
+    if (
+        note
+        and first.frequency_hz == TRANSITION_HZ[10]
+        and run.scene.single_mode.free_period_s == FREE_PERIOD_S
+    ):
         note += f"; {AT_THE_EDGE}"
     verdict: Verdict = "agrees" if all(same) else "in part" if any(same) else "differs"
     run.verdict(f"p{first.letter}", verdict, found=in_words(rows), note=note)

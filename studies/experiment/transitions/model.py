@@ -24,7 +24,7 @@ from studies.physics.descriptions import (
 from studies.physics.two_parameters import Extracted, extracted
 from studies.shell.scene import Scene, beam_at, of_the_letter, single_mode_at
 
-OTHER_EXCESSES = (2.5e-4, 1e-2)
+OTHER_EXCESSES = (letter.AMPLITUDE_STABILITY, 1e-2)
 """Where the born period is given as well: the letter's amplitude stability, and well above grazing."""
 
 

@@ -50,7 +50,7 @@ EXCESSES = sorted({0.0, *(way * STABLE * 2.0 ** (0.5 * k) for k in range(13) for
 THIN = 2, 6
 """Every so many places of the plane, both ways: the full form, the small one."""
 
-FREQUENCY_HZ = 22.20
+FREQUENCY_HZ = letter.TRANSITION_HZ[5]
 """The letter's p5: a scene that has it there describes the letter's spring."""
 
 UNSEEN, SPEEDS = 1e-11, (1e-4, 1.0)

@@ -89,6 +89,15 @@ def rates(t: float, y: Array, out: Array, modes: Array, scalars: Array, kind: in
         out[n + k] = modes[3, k] * swing - modes[1, k] * y[n + k] - modes[0, k] * y[k] - modes[2, k] * force
 
 
+def numbers_of(oscillator: ImpactOscillator, clock: float = 0.0) -> tuple[Array, Array]:
+    """`modes` and `scalars` of `rates`; times count from the drive time `clock` [s]."""
+    model, drive, stop = oscillator.model, oscillator.drive, oscillator.stop
+    amplitude, w = (0.0, 0.0) if drive is None else (drive.amplitude, drive.angular_frequency)
+    push = model.participation * amplitude * w**2
+    modes = np.ascontiguousarray([model.omega**2, model.decay_rate, model.phi, push])
+    return modes, np.array([w, w * clock, stop.gap, stop.law.numbers[0]])
+
+
 class Equations:
     """The equations of a run; times count from its start."""
 
@@ -104,10 +113,8 @@ class Equations:
         self.oscillator, self.start, self.tolerance = oscillator, run.start, tolerance
         self.n, self.phi = oscillator.n_modes, model.phi
         self.compliance, self.number = float(model.phi @ model.phi), law.numbers[0]
-        amplitude, w = (0.0, 0.0) if drive is None else (drive.amplitude, drive.angular_frequency)
-        push = model.participation * amplitude * w**2
-        self.modes = np.ascontiguousarray([model.omega**2, model.decay_rate, model.phi, push])
-        self.scalars = np.array([w, w * run.clock, oscillator.stop.gap, self.number])
+        self.modes, self.scalars = numbers_of(oscillator, run.clock)
+        w, amplitude = float(self.scalars[0]), 0.0 if drive is None else drive.amplitude
         lowest = w if w > 0.0 else 2.0 * math.pi / oscillator.period
         pace = np.maximum(model.omega, lowest)
         vectors = (

@@ -29,6 +29,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Annotated
 
+from studies import letter
 from studies.methods.peers import missing_solvers
 from studies.methods.work_precision import costs, gradients
 from studies.methods.work_precision.measures import (
@@ -46,7 +47,7 @@ from studies.shell.digits import written
 from studies.shell.scene import Scene, harmonic, single_mode_at
 from studies.shell.study import Run, study
 
-SLOWEST_QUICK, MODES_QUICK, GRADIENT_HZ = 0.01, 4, 22.2
+SLOWEST_QUICK, MODES_QUICK, GRADIENT_HZ = 0.01, 4, letter.TRANSITION_HZ[5]
 """With --quick: longest time for a drive period [s], modes of the beam. Drive frequency of gradients [Hz]."""
 
 

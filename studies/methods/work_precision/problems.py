@@ -34,10 +34,8 @@ from contact import (
     first_collision,
 )
 from contact.orbits import settle
+from studies.letter import TIME_TRACE_EXCESS, TIME_TRACE_HZ
 from studies.shell.scene import Scene, beam_at, hertz_of, single_mode_at
-
-FREQUENCY, EXCESS = 21.50, 0.013
-"""Drive frequency [Hz] and F/F_g - 1 of the letter's Fig. 4."""
 
 EQ_1, HERTZ = "Eq. (1)", "beam, Hertz contact"
 
@@ -123,7 +121,7 @@ def linear_beam(scene: Scene) -> ImpactOscillator:
 def hertz_beam(scene: Scene) -> ImpactOscillator:
     """The scene's beam with the scene's Hertz contact, at the excess of Fig. 4."""
     stop = Stop(gap=scene.stop.gap_m, law=hertz_of(scene))
-    return replace(beam_at(scene, FREQUENCY), stop=stop).with_excess(EXCESS)
+    return replace(beam_at(scene, TIME_TRACE_HZ), stop=stop).with_excess(TIME_TRACE_EXCESS)
 
 
 def two_masses(w: float, force: float = 0.1) -> ImpactOscillator:
@@ -143,7 +141,7 @@ def two_masses(w: float, force: float = 0.1) -> ImpactOscillator:
 def problems_of(scene: Scene, modes: int = MODES) -> list[Problem]:
     """The driven problems of the study, the beam with `modes` modes."""
     beam = scene.replace({"modes.count": modes})
-    one = single_mode_at(scene, FREQUENCY).with_excess(EXCESS)
+    one = single_mode_at(scene, TIME_TRACE_HZ).with_excess(TIME_TRACE_EXCESS)
     return [
         driven_problem(EQ_1, "Eq. (1), hard wall", one),
         driven_problem("beam, linear contact", f"beam, {modes} modes, linear contact", linear_beam(beam)),

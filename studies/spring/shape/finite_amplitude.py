@@ -30,6 +30,7 @@ from scipy.optimize import newton
 from beam import FiniteRotation, backbone_coefficient, periodic_motion
 from contact import NonlinearMode
 from contact.orbits import born_period
+from studies.letter import AMPLITUDE_STABILITY
 from studies.physics.calibration import calibrate_thickness
 from studies.shell.scene import Scene, harmonic, nonlinear_mode_at, periods_of, spring_of
 from studies.spring.shape.shapes import TITLES, Reading
@@ -44,7 +45,7 @@ RADII = (4e-3, 5.5e-3, 7.5e-3, 10e-3, 15e-3, 20e-3, 25e-3, 30e-3, 40e-3)
 GAPS, BALLS = (4e-3, 7e-3, 15e-3, 20e-3), (0.0, 4e-3, 8e-3)
 """Bend radii, gaps [m] and masses of ball and mount [kg] beside the scene's own."""
 
-EXCESSES = (2.5e-4, 1e-3)
+EXCESSES = (AMPLITUDE_STABILITY, 1e-3)
 """At which the born period is asked: the letter's stability, and its scale."""
 
 CLOSE = 5e-6
