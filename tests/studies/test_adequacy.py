@@ -11,8 +11,7 @@ import pytest
 from oscillators import slow
 
 from studies.methods.adequacy.__main__ import questions, sentences
-from studies.methods.adequacy.models import Choice, Models
-from studies.methods.adequacy.search import QUANTITIES, LeastModel, Search, first
+from studies.methods.adequacy.model import QUANTITIES, Choice, LeastModel, Models, Search, first
 from studies.physics.least_model import least_modes
 from studies.shell.scene import read_scene
 

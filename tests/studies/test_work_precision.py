@@ -16,12 +16,11 @@ from studies.letter import TIME_TRACE_EXCESS
 from studies.methods.peers import missing_solvers
 from studies.methods.work_precision import gradients
 from studies.methods.work_precision.costs import heyoka_orbit
-from studies.methods.work_precision.measures import Reference, missed_share, reference_of, rows_of
 from studies.methods.work_precision.methods import EXACT, STEPPED, Setting, Sweep, sweeps_for
 from studies.methods.work_precision.methods import STEPS as STEPS_OF
+from studies.methods.work_precision.model import Reference, in_turns, missed_share, reference_of, rows_of
 from studies.methods.work_precision.problems import Problem, driven_problem, hertz_beam, linear_beam
 from studies.methods.work_precision.reference import extended_motion
-from studies.methods.work_precision.timing import in_turns
 from studies.shell.scene import read_scene, single_mode_at
 
 SCENE = read_scene("letter", [])

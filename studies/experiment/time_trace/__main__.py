@@ -1,4 +1,4 @@
-"""Fig. 4 of the letter: a settled orbit in time, and its spectrum.
+"""Fig. 4 of the letter: a settled orbit in time, its spectrum, its film.
 
 Claim (letter 1996, Fig. 4): at F/F_g - 1 = 0.013 the orbit has period 4, and at impact "a multitude of
 high-order modes is excited in the beam".

@@ -18,8 +18,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from studies.methods.adequacy.models import EQ_1, Models
-from studies.methods.adequacy.search import LeastModel, Search
+from studies.methods.adequacy.model import EQ_1, LeastModel, Models, Search
 from studies.physics.least_model import middle_of
 from studies.shell.scene import Scene, harmonic
 from studies.shell.study import Run, study

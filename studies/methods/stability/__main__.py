@@ -23,7 +23,7 @@ from functools import partial
 from typing import Annotated
 
 from beam import InvalidValue
-from studies.methods.stability import FAMILIES, Limit, family, findings
+from studies.methods.stability.model import FAMILIES, Limit, family, findings
 from studies.shell.digits import written
 from studies.shell.run import MOST_FINDINGS
 from studies.shell.scene import Scene

@@ -22,7 +22,7 @@ from scipy.integrate import solve_ivp
 
 from beam import ModalModel
 from contact import ImpactKind, ImpactOscillator, NewtonRestitution, Stop, simulate
-from studies.methods.stability import Findings, Limit
+from studies.methods.stability.model import Findings, Limit
 from studies.shell.scene import Scene
 
 HEIGHT, GRAVITY = 1.0, 9.81

@@ -25,9 +25,7 @@ import numpy as np
 
 from beam import ModalModel
 from contact.integrators import CentralDifference
-from studies.methods.stability import Findings, Limit
-from studies.methods.stability.free_mass import energy_after
-from studies.methods.stability.lasting_contact import limit, stiffest
+from studies.methods.stability.model import Findings, Limit, energy_after, limit, stiffest
 from studies.shell.scene import Scene, model_of
 
 SOFT = 1e-12

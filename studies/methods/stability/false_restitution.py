@@ -26,7 +26,7 @@ from matplotlib.figure import Figure
 from contact import ImpactOscillator, before_collision, collisions, first_collision, simulate
 from contact.integrators import GeneralisedAlpha, Integrator
 from studies import letter
-from studies.methods.stability import IMPLICIT, Findings, Limit
+from studies.methods.stability.model import IMPLICIT, Findings, Limit
 from studies.shell import plotting
 from studies.shell.scene import Scene, beam_at
 

@@ -29,8 +29,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from contact.integrators import GeneralisedAlpha
-from studies.methods.stability import IMPLICIT, Findings, Limit
-from studies.methods.stability.free_mass import energy_after
+from studies.methods.stability.model import IMPLICIT, Findings, Limit, energy_after
 from studies.shell import plotting
 from studies.shell.scene import Scene
 

@@ -33,7 +33,7 @@ from contact import LinearContact, NewtonRestitution, Stop
 from contact.integrators import INTEGRATORS, CentralDifference, Integrator, MoreauJean, SampledFlight
 from studies.methods.crossings import Swing
 from studies.methods.peers import OutsideSolver
-from studies.methods.stability import Findings, Limit, threshold
+from studies.methods.stability.model import Findings, Limit, threshold
 from studies.shell import plotting
 from studies.shell.digits import written
 from studies.shell.scene import Scene, model_of

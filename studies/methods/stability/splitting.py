@@ -18,8 +18,7 @@ from __future__ import annotations
 
 from beam import ModalModel
 from contact.integrators import Splitting
-from studies.methods.stability import Findings, Limit
-from studies.methods.stability.lasting_contact import stiffest
+from studies.methods.stability.model import Findings, Limit, stiffest
 from studies.shell.scene import Scene, model_of
 
 

@@ -22,10 +22,15 @@ from typing import Annotated
 from matplotlib.figure import Figure
 
 from contact import ContactError
-from studies.methods.validation.bars import two_bars
-from studies.methods.validation.one_mode import aberdeen, coco, ghosh_simpson, sdnd122
-from studies.methods.validation.printed import Printed
-from studies.methods.validation.two_beams import two_beams
+from studies.methods.validation.model import (
+    Printed,
+    aberdeen,
+    coco,
+    ghosh_simpson,
+    sdnd122,
+    two_bars,
+    two_beams,
+)
 from studies.shell import plotting
 from studies.shell.digits import written
 from studies.shell.scene import Scene

@@ -23,8 +23,8 @@ from studies import letter
 from studies.methods.peers import OutsideSolver, missing_solvers
 from studies.methods.peers.adapters import heyoka_equations
 from studies.methods.peers.piecewise import numbers_of
+from studies.methods.work_precision.model import Orbit, in_turns
 from studies.methods.work_precision.problems import EQ_1, HERTZ
-from studies.methods.work_precision.timing import Orbit, in_turns
 from studies.shell.scene import Scene, beam_at, harmonic, model_of, single_mode_at
 from studies.shell.study import Run
 

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 
 from contact import ImpactOscillator, State, simulate
 from contact.orbits import motion_derivatives
-from studies.methods.work_precision.timing import timed
+from studies.methods.work_precision.model import timed
 from studies.physics.parameters import changes_of, parameters_of, with_values
 
 Array = NDArray[np.float64]

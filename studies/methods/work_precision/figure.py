@@ -10,8 +10,8 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.figure import Figure
 
-from studies.methods.work_precision.measures import Point, Reference
 from studies.methods.work_precision.methods import EXACT, OUTSIDE, PERIODIC, STEPPED
+from studies.methods.work_precision.model import Point, Reference
 from studies.shell import plotting
 from studies.shell.plotting import MARKERS, PALETTE
 

@@ -16,11 +16,12 @@ from __future__ import annotations
 import math
 import statistics
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from decimal import Decimal
 from functools import partial
-from typing import Annotated
+from statistics import median
+from typing import Annotated, TypeVar
 
 import numpy as np
 
@@ -32,7 +33,33 @@ from studies.methods.work_precision.harmonic_balance import balanced
 from studies.methods.work_precision.methods import PERIODIC, Sweep
 from studies.methods.work_precision.problems import Problem, driven_problem, two_masses
 from studies.methods.work_precision.reference import DIGITS, extended_motion
-from studies.methods.work_precision.timing import timed
+
+Name = TypeVar("Name", bound=Hashable)
+Orbit = Callable[[int], object]
+"""orbit(periods): carries a motion on by that many drive periods."""
+
+
+def in_turns(runs: Mapping[Name, tuple[Orbit, int]], repeats: int) -> dict[Name, float]:
+    """Median microseconds per drive period of each orbit over its periods.
+
+    Compared programs run in turns, A B A B ..., so that a machine that slows down slows both. Each runs once
+    before the clock starts.
+    """
+    spent: dict[Name, list[float]] = {name: [] for name in runs}
+    for orbit, periods in runs.values():
+        orbit(periods)
+    for _ in range(repeats):
+        for name, (orbit, periods) in runs.items():
+            began = time.thread_time()
+            orbit(periods)
+            spent[name].append(1e6 * (time.thread_time() - began) / periods)
+    return {name: median(times) for name, times in spent.items()}
+
+
+def timed(call: Callable[[], object], repeats: int) -> float:
+    """Median microseconds of a call."""
+    return in_turns({"": (lambda _: call(), 1)}, repeats)[""]
+
 
 REPEATS, SLOWEST = 9, 0.5
 """Timed runs of a point; longest drive period of a setting that is run [s]: errors and cost take twenty."""
