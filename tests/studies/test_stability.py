@@ -11,9 +11,10 @@ import pytest
 from beam import ModalModel
 from contact import first_collision, simulate
 from contact.integrators import Exact, Splitting
+from studies.methods.stability import explicit, splitting
 from studies.methods.stability.false_restitution import outcomes
 from studies.methods.stability.implicit_energy import STIFF_GROWTH, evenly, single_contact, stiff_contacts
-from studies.methods.stability.model import energy_after, explicit, pressed, splitting, threshold
+from studies.methods.stability.model import energy_after, pressed, threshold
 from studies.shell.scene import beam_at
 
 MODEL = ModalModel(

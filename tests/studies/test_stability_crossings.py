@@ -11,8 +11,8 @@ import pytest
 from contact import Regime, simulate
 from contact.integrators import INTEGRATORS, CentralDifference, Exact, GeneralisedAlpha, MoreauJean
 from studies.methods.crossings import Swing
-from studies.methods.stability.missed_crossings import OVERSHOOTS, invented, of_package, share_wrong, tried
 from studies.methods.stability import accumulation, missed_crossings
+from studies.methods.stability.missed_crossings import OVERSHOOTS, invented, of_package, share_wrong, tried
 from studies.shell.scene import model_of, read_scene
 
 SCENE = read_scene("letter")

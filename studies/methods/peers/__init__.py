@@ -9,11 +9,14 @@ sundials   CVODE by scikit-sundae: Adams-Moulton up to order 12 or BDF up to ord
            the exact Jacobian, with root finding; a restart begins at order 1
 
 They integrate from one touch or release to the next, which their own root finding has to notice, and are
-started anew there (``studies.methods.peers.piecewise``). Nothing is shared with the exact methods but the
+started anew there. Nothing is shared with the exact methods but the
 parameters. Dashpots, constant loads and other laws are refused; a tip that comes to rest on the stop ends in
 an error.
 
 No library is imported before a run needs it.
+
+`piecewise`   the equations of a flight and of a contact, and the motion from one event to the next
+`adapters`    SciPy, heyoka and CVODE, each from one event to the next
 """
 
 from __future__ import annotations

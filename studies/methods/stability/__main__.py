@@ -1,8 +1,7 @@
 """Where each numerical method fails: theory beside measurement.
 
 Claim: a method for impacts fails by its step, by what it does to the energy of a contact, by a touch that it
-does not see, or by impacts that accumulate, and each of these failures lies where theory puts it. Six
-families, each derived at the head of its file:
+does not see, or by impacts that accumulate, and each of these failures lies where theory puts it:
 
     explicit             central difference: limits of the step; energy made in short contacts within them
     splitting            the stiffest contact that kick-flight-kick bears, and resonances beyond h omega = pi

@@ -14,8 +14,8 @@ follows.  Modes, omega T and phi sqrt(m) at the end: k pi and sqrt(2), 1 for k =
 (held).
 
 **Two beams.**  Two cantilevers that meet through a soft one-sided spring, measured on a shaker: L. Woiwode
-and M. Krack, J. Struct. Dyn. (2024), doi 10.25518/2684-6500.180.  A mini-beam on the right strip meets a cap nut
-on the left one across a gap.  Geometry, added masses and stiffness factors are from their beam model
+and M. Krack, J. Struct. Dyn. (2024), doi 10.25518/2684-6500.180.  A mini-beam on the right strip meets a cap
+nut on the left one across a gap.  Geometry, added masses and stiffness factors are from their beam model
 (maltekrack/NLtest, TESTRIGS/02_VIbeams/setUpLinearModalBeamModel.m).  The mini-beam, free at both ends, is
 tied to the right beam by w and theta at its root, R (x_right, x_mini) = 0; with N a basis of the null space
 of R, K = N^T K N and M = N^T M N.
