@@ -9,8 +9,6 @@ Run:     python -m studies pictures [--out DIR]
 Writes:  p4.png, costs.png; by default in docs/pictures of the checkout
 """
 
-from __future__ import annotations
-
 import csv
 import io
 import json
@@ -36,8 +34,7 @@ from studies.shell.painter import draw_rig
 from studies.shell.plotting import BLUE, PALETTE, PURPLE, STYLE, VERMILION, Style
 from studies.shell.scene import beam_at, model_of, modes_of, read_scene
 
-Drawn = Mapping[str, Any]
-"""What a picture shows: names -> numbers, rows of numbers, or mappings of them."""
+Drawn = Mapping[str, Any]  # what a picture shows: names -> numbers, rows of numbers, or mappings of them
 
 SCENE = read_scene("letter", ["modes.count=12"])
 COSTS, PICTURES = ROOT / "docs" / "costs.csv", ROOT / "docs" / "pictures"

@@ -14,8 +14,6 @@ The folds come by closed form (map, Eq. (1)), from what each collision of the be
 parameters) or to all modes (kicks), and by shooting (beam).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -49,11 +47,9 @@ from studies.shell.scene import READOUT, Scene, beam_at, nordmark_at, single_mod
 TITLES = {"map": "Nordmark map", "single_mode": "Eq. (1)", "two_parameters": "two parameters", "beam": "beam"}
 """The descriptions with a strobed map, from the shortest to the fullest, and how figures name them."""
 
-BELOW = -1e-3
-"""Excess of the motion without impacts from which a motion above grazing starts [1]."""
+BELOW = -1e-3  # excess of the motion without impacts from which a motion above grazing starts [1]
 
-ROUNDING = 1e-12
-"""Change of an excess that is rounding [1]."""
+ROUNDING = 1e-12  # change of an excess that is rounding [1]
 
 Strobed = StrobedMap[Any]
 Diagram = OrbitDiagram[Any]

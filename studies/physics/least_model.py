@@ -31,8 +31,6 @@ above the fastest drive. `studies.methods.adequacy` holds this choice against a 
 orbit.
 """
 
-from __future__ import annotations
-
 import math
 from bisect import bisect
 from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
@@ -52,8 +50,7 @@ from studies.shell.scene import Scene, SceneError, beam_at, model_of, periods_of
 REFERENCE = 40
 """Coupled modes of the reference: for the letter's spring 30 have its folds to 2e-4, 60 to 1e-4."""
 
-LADDER = (1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 15, 18, 21, 25, 30)
-"""Numbers of modes that are tried."""
+LADDER = (1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 15, 18, 21, 25, 30)  # numbers of modes that are tried
 
 TRACE_EXCESS, BORN = letter.TIME_TRACE_EXCESS, 1e-3
 COLLISIONS = (0.5 * TRACE_EXCESS, TRACE_EXCESS, 2.0 * TRACE_EXCESS)
@@ -62,16 +59,13 @@ COLLISIONS = (0.5 * TRACE_EXCESS, TRACE_EXCESS, 2.0 * TRACE_EXCESS)
 ALWAYS = {"response": 1e-3, "kick": 0.005, "restitution": 0.01}
 """Quantities, with tolerances, that take the place of one that the reference lacks."""
 
-SAMPLES = 256
-"""Samples of a trace in a drive period."""
+SAMPLES = 256  # samples of a trace in a drive period
 
 Values = NDArray[np.float64]
 Answer = Values | None
-At = Callable[[float], ImpactOscillator]
-"""The oscillator of a model at a drive frequency [Hz]."""
+At = Callable[[float], ImpactOscillator]  # the oscillator of a model at a drive frequency [Hz]
 Distance = Callable[[Values, Values], float]
-Ask = Callable[..., Answer]
-"""The answer of a model at a drive frequency [Hz] and, if given, an excess [1]."""
+Ask = Callable[..., Answer]  # the answer of a model at a drive frequency [Hz] and, if given, an excess [1]
 Fold = Callable[[StroboscopicMap, int], float | None]
 Off = Callable[[int], float]
 Choice = TypeVar("Choice", bound=Hashable)

@@ -9,8 +9,6 @@ frequency, amplitude            of the base motion; with one mode Z is that of E
                                 spring, so that it is fitted where the record is not that of one mode
 """
 
-from __future__ import annotations
-
 import math
 import warnings
 from collections.abc import Iterable, Mapping, Sequence

@@ -36,8 +36,7 @@ from studies.shell.study import Run, study
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-FILMED, DRAWN = 6, 8
-"""Modes with a film, and in the figure; lowest first."""
+FILMED, DRAWN = 6, 8  # modes with a film, and in the figure; lowest first
 
 LARGEST = 0.05
 """Largest displacement of a drawn shape over the greatest extent of the strip; legs do not cross yet."""

@@ -19,8 +19,6 @@ Writes:  outcomes.csv (a row a beam), islands.csv, born_period.csv (a row a cell
          breakdown.csv (a row a strobed point of the scans), and the figures breakdown, born_period
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import Annotated
@@ -56,8 +54,7 @@ FACTORS = (0.25, 0.5, 1.0, 1.5, 2.0, 3.0, 8.0)
 QUICK_MASSES_G, QUICK_FACTORS = (3.5, 4.0), (1.0, 2.0)
 """Ball and mount [g], factors on the damping of the higher modes."""
 
-MOST_SCANNED = 4
-"""Cells with period 6 whose scans are made: those that depart least from the scene."""
+MOST_SCANNED = 4  # cells with period 6 whose scans are made: those that depart least from the scene
 
 
 @study(

@@ -5,8 +5,6 @@ prints no drive amplitude with Fig. 5). What is not printed can be varied: the m
 the thickness that keeps T, and a factor on the damping of the modes above the first.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
@@ -28,8 +26,7 @@ DECAY_RATE_PER_S, BORN_PERIOD = letter.BREAKDOWN["decay_rate_per_s"], letter.BRE
 BORN_EXCESS, SEARCH_CYCLES = 1e-3, 1500
 """Where the born period is read, and the drive periods that a motion gets to settle there."""
 
-NEAR = 0.2
-"""Relative distance from the free period of Fig. 5 beyond which a spring is another one."""
+NEAR = 0.2  # relative distance from the free period of Fig. 5 beyond which a spring is another one
 
 CHAOS_AT = letter.BREAKDOWN["chaos_at"]
 LOWEST, HIGHEST = -0.14, 0.012
@@ -38,8 +35,7 @@ LOWEST, HIGHEST = -0.14, 0.012
 ISLAND_STEP, ISLAND_CYCLES = 5e-4, 1500
 """Step of the excess and drive periods at each, for the end of the island; beyond it chaos is a transient."""
 
-LAST = 0.05
-"""Impacts may go on below p3 for this part of its excess and still end with it."""
+LAST = 0.05  # impacts may go on below p3 for this part of its excess and still end with it
 
 
 def fig_5(scene: Scene) -> Scene:

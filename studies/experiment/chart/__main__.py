@@ -20,8 +20,6 @@ Run:     python -m studies chart [--model beam] [--quick]
 Writes:  chart_MODEL.npz (cells), folds_MODEL.csv; cut.csv, cut.npz; basins.npz; and the figures of these
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Mapping
 from functools import partial
@@ -74,11 +72,9 @@ LARGEST_PERIOD = 64
 NEEDS = {"born_period": 0.0, "fold_middle": 0.07}
 """What the chart of the beam rests on; Eq. (1) needs nothing."""
 
-CUT_NEEDS = {"fold": 0.05}
-"""Accuracy requirement of the cut."""
+CUT_NEEDS = {"fold": 0.05}  # accuracy requirement of the cut
 
-MOST_REASONS = 20
-"""Failures with a sentence of their own; all are in the columns."""
+MOST_REASONS = 20  # failures with a sentence of their own; all are in the columns
 
 
 @study(quick={"side": 32})

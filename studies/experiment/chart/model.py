@@ -15,8 +15,6 @@ Theory draws over the chart the band edges of the map, and the folds at which p_
 (``contact.orbits``). Only orbits with one impact, and only where no further touch spoils them (certified).
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -102,11 +100,9 @@ def side_by_side(columns: Sequence[Column]) -> dict[str, NDArray[np.int32]]:
     }
 
 
-LARGEST = 24
-"""Largest m that is drawn; its band ends at 23.98 Hz for the letter's period."""
+LARGEST = 24  # largest m that is drawn; its band ends at 23.98 Hz for the letter's period
 
-FEWEST = 7
-"""Folds of the beam looked for in each band at least, so that its curve is smooth."""
+FEWEST = 7  # folds of the beam looked for in each band at least, so that its curve is smooth
 
 
 def bands_in(scene: Scene, low: float, high: float) -> tuple[Band, ...]:

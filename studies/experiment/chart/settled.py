@@ -10,8 +10,6 @@ the orbit's, in x and x'/omega: for p_m then nothing else is near, and next to t
 what is left of the free oscillation is a small part of what the tip keeps off the wall.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Annotated, Any
@@ -26,8 +24,7 @@ from studies.shell.scene import READOUT, Scene, single_mode_at
 CUT, QUICK_CUT = (np.linspace(-0.016, 0.06, 39), 600), (np.linspace(-0.016, 0.06, 11), 100)
 """Amplitudes of the cut [1] and drive periods in the averages of the exponents; of the small form."""
 
-SIGNIFICANT = 3.0
-"""Standard errors by which an exponent must differ from zero to be told from it."""
+SIGNIFICANT = 3.0  # standard errors by which an exponent must differ from zero to be told from it
 
 ALIGN = 20
 """Periods in which tangents find their direction: the slowest contraction between two of them is e^-0.08."""
@@ -96,8 +93,7 @@ def carried(
 
 EXCESS = -0.006
 
-FAR = 1.5
-"""Half the side of the plane of starts, in x/gap and x'/(2 pi f gap)."""
+FAR = 1.5  # half the side of the plane of starts, in x/gap and x'/(2 pi f gap)
 
 NEAR, OF_EXCESS = 1e-5, 0.1
 """Distance from an orbit at which a motion has reached it, in gaps (a basin narrower than that is missed),

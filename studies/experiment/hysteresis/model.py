@@ -16,8 +16,6 @@ With alpha = 2 sqrt(gamma) cos(theta) and gamma = exp(-mu/f) the edges in freque
 curves in the plane of alpha and gamma, with mu as parameter. The experiment crosses them along its own mu.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Annotated
@@ -50,11 +48,9 @@ CAUSES = dict(
 )
 """Cause -> the two neighbours in the chain between which it lies."""
 
-FREQUENCIES_HZ = (19.6, 23.8)
-"""Of the letter's spring; others at the same f T."""
+FREQUENCIES_HZ = (19.6, 23.8)  # of the letter's spring; others at the same f T
 
-EDGE = 1e-7
-"""Distance of the last frequency in a band from its upper edge, relative to the band."""
+EDGE = 1e-7  # distance of the last frequency in a band from its upper edge, relative to the band
 
 BELOW_BAND = 0.5
 """How far below its band in the map a period is looked for, in widths of the band: there it coexists."""

@@ -19,8 +19,6 @@ Writes:  sensitivity.csv (a row a frequency, description and change), p10.csv (a
          clouds.csv (a row a period), and the figure fold_against_parameter
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import Annotated
@@ -36,11 +34,9 @@ from studies.shell.digits import written
 from studies.shell.scene import Scene, SceneError, harmonic, model_of, single_mode_at
 from studies.shell.study import Run, study
 
-HIGHEST = max(TRANSITION_HZ)
-"""m of the last transition that the letter saw."""
+HIGHEST = max(TRANSITION_HZ)  # m of the last transition that the letter saw
 
-IN_NOISE = range(3, 17), range(8, 12)
-"""m of Eq. (1) in noise: the full form, the small one."""
+IN_NOISE = range(3, 17), range(8, 12)  # m of Eq. (1) in noise: the full form, the small one
 
 
 @study(needs={"fold": 0.05}, quick={"correlation_times": (0.0, 100.0)})

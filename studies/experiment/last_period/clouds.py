@@ -7,8 +7,6 @@ drift moves all points of a record together.  p_m is held if it is seen one stan
 amplitude above grazing.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -23,8 +21,7 @@ from studies.letter import SETTLE_CYCLES, STROBE_POINTS
 from studies.physics.drive_noise import DriveNoise, watched
 from studies.shell.scene import READOUT, Scene, band_of
 
-BORN_EXCESS = 1e-3
-"""Excess of the orbit in noise."""
+BORN_EXCESS = 1e-3  # excess of the orbit in noise
 
 SHARE_OF_BAND = 0.15
 """Distance of the frequency from the upper edge of the band of p_m over its width: the letter's mean."""
@@ -32,8 +29,7 @@ SHARE_OF_BAND = 0.15
 WAITS, WAITING = 10, SETTLE_CYCLES
 """Waitings for which the orbit is followed, one after the other, and their drive periods."""
 
-FEWEST = 10
-"""Least number of points of a cloud."""
+FEWEST = 10  # least number of points of a cloud
 
 SEED = 1996
 

@@ -22,8 +22,6 @@ Writes:  time_trace.npz, collisions.csv or impacts.csv, spectrum.npz, peaks.csv,
          with --film motion.gif, motion.mp4 (extra `video`) and motion.pvd for ParaView
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from typing import Annotated, Any
@@ -45,11 +43,9 @@ from studies.shell.scene import Scene, beam_at, model_of, own_frequency, require
 from studies.shell.study import Run, study
 
 NEEDS = {"tip_trace": 2e-3, "kick": 0.005, "restitution": 0.01}
-ORBIT_PERIODS = 2
-"""Periods of the orbit in the figure."""
+ORBIT_PERIODS = 2  # periods of the orbit in the figure
 
-APERIODIC = 8
-"""Drive periods shown of a motion that has no period."""
+APERIODIC = 8  # drive periods shown of a motion that has no period
 
 TOLD = "first_touch approach restitution delay kick impacts contact_time peak_force ringing".split()
 """Columns of a collision that are shown to a person."""

@@ -39,11 +39,9 @@ from studies.shell.painter import DRIVE, TOUCHED, WIDTH, Moment, Picture, Scener
 from studies.shell.scene import Scene, modes_of
 from studies.shell.study import Run
 
-CUE = 2.0
-"""Times slower than the flight, from where on the film says so in words."""
+CUE = 2.0  # times slower than the flight, from where on the film says so in words
 
-DOTS = 110
-"""Points an inch of the strip below the spring."""
+DOTS = 110  # points an inch of the strip below the spring
 
 
 def film(
@@ -129,11 +127,9 @@ def strip(orbit: FilmedOrbit, trace: Trace, gaps: Sequence[float]) -> Below:
 Array = NDArray[np.float64]
 
 NEARER, IN_CONTACT = 8.0, 6.0
-FLIGHT_STEPS = 120.0
-"""Steps of the flight in a whole film, were there no contacts."""
+FLIGHT_STEPS = 120.0  # steps of the flight in a whole film, were there no contacts
 
-APERIODIC = 4
-"""Drive periods shown of a motion that has no period."""
+APERIODIC = 4  # drive periods shown of a motion that has no period
 
 ROOM, MOST = 0.07, 100.0
 """Largest enlarged departure over the greatest extent of the strip; enlargement beyond which nothing is

@@ -17,8 +17,6 @@ Writes:  transitions.csv (a row a frequency and description), two_parameters.csv
          read-out point), orbit_diagram_two_parameters, orbit_diagram_single_mode, orbit_diagram_map
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import Annotated
@@ -32,11 +30,9 @@ from studies.shell.run import Verdict
 from studies.shell.scene import Scene, harmonic, model_of
 from studies.shell.study import Run, study
 
-QUICK_POINTS = 21
-"""Amplitudes of a scan in the small form, at most."""
+QUICK_POINTS = 21  # amplitudes of a scan in the small form, at most
 
-NEARLY = 1.25
-"""Factor within which two ends of an orbit count as one."""
+NEARLY = 1.25  # factor within which two ends of an orbit count as one
 
 AT_THE_EDGE = (
     "the edge between p10 and p11 lies at 23.343 Hz, where f T = 20/21: p10 at grazing needs T below 40.70 ms"

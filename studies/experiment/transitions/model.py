@@ -1,7 +1,5 @@
 """One transition p1 <-> p_m in each description: born period, end on the way down, orbit diagram."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Annotated

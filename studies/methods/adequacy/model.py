@@ -19,8 +19,6 @@ A residual mode replaces the modes left out (``ModalModel.with_residual_mode``).
 A model without an answer (no such mode, no return of the single mode, no orbit) is infinitely far off.
 """
 
-from __future__ import annotations
-
 import math
 from bisect import bisect
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -55,11 +53,9 @@ IN_WORDS = {"newton": "Newton", "linear": "linear", "hertz": "Hertz", "hunt_cros
 IN_WORDS["tsuji"] = "Tsuji"
 LAWS = tuple(IN_WORDS)
 MODES = (*LADDER, REFERENCE)
-MESHES = (2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96)
-"""Elements on a leg."""
+MESHES = (2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96)  # elements on a leg
 
-BEND_SHARE = 0.8
-"""Elements on the bend for each one on a leg: the proportion of the default mesh."""
+BEND_SHARE = 0.8  # elements on the bend for each one on a leg: the proportion of the default mesh
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -130,8 +126,7 @@ class Models:
         return reduce(modes_of(scene), damping_of(scene), modes) if mesh else model_of(scene)
 
 
-MESH_ORDER = 4
-"""Of frequencies and shapes, with cubic Hermite elements."""
+MESH_ORDER = 4  # of frequencies and shapes, with cubic Hermite elements
 
 
 def _delays(at: At, frequency: float) -> Answer:

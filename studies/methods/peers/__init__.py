@@ -19,8 +19,6 @@ No library is imported before a run needs it.
 `adapters`    SciPy, heyoka and CVODE, each from one event to the next
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass

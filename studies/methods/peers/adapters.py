@@ -12,8 +12,6 @@ Touch and release are regular points; a wanted time within a contact is an event
 kind of equation and tolerance, in each thread, with all physical numbers as run-time parameters.
 """
 
-from __future__ import annotations
-
 import math
 import threading
 from typing import Any
@@ -25,8 +23,7 @@ from studies.methods.peers.piecewise import Advance, Array, Equations, Piece
 MOST_STEPS = 1_000_000
 """Bound of the steps of one piece, far beyond what a drive period takes at any tolerance."""
 
-FAR = 1e30
-"""End of a piece in sigma, never reached: an event ends it [s m^-1/2]."""
+FAR = 1e30  # end of a piece in sigma, never reached: an event ends it [s m^-1/2]
 
 _kept = threading.local()
 

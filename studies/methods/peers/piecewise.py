@@ -14,8 +14,6 @@ displacements tolerance V/omega_k. The right-hand side is compiled; in numpy it 
 third slower.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -40,8 +38,7 @@ from contact.integrators import Run
 
 EPS = 2.220446049250313e-16
 
-FLIGHT, LINEAR, HERTZ = 0, 1, 2
-"""What a piece is, for the kernel."""
+FLIGHT, LINEAR, HERTZ = 0, 1, 2  # what a piece is, for the kernel
 
 MOST_IMPACTS = 2000
 """Bound of impacts in one period: with so many the tip is on its way to rest, which is not followed, or the

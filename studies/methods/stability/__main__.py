@@ -14,8 +14,6 @@ Run:     python -m studies stability [--families explicit,splitting] [--quick]
 Writes:  limits.csv (all rows); for three families NAME.npz (arrays of its figure) and NAME.png
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial

@@ -14,8 +14,6 @@ table is the exact collision. What the methods for Newton's law make of a step i
 `studies.methods.work_precision`.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from functools import partial

@@ -19,8 +19,6 @@ it leaves at speed (3 - 4u) v if u < 2/3 and (8u - 5) v if u > 2/3, anything fro
 so that the energy grows e-fold in less than two contacts, whatever the step.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from functools import partial

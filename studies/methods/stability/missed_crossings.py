@@ -19,8 +19,6 @@ the turning points as well, and miss a crossing only where the tip turns twice b
 no formula. Tried on the lowest mode of the scene; fixed steps are a hundredth of its period.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields
@@ -39,13 +37,11 @@ from studies.shell.digits import written
 from studies.shell.scene import Scene, model_of
 
 OVERSHOOTS = 10.0 ** -np.arange(1, 13)
-FINE = np.geomspace(1e-12, 1e-1, 276)
-"""Where the formulas are drawn, 25 points a decade."""
+FINE = np.geomspace(1e-12, 1e-1, 276)  # where the formulas are drawn, 25 points a decade
 PHASES = 64
 """Runs for each overshoot. A share is good to 0.5/sqrt(runs) for a solver whose steps do not keep to a grid,
 and the overshoot at which it is one half to a factor exp(2/sqrt(runs)): 1.3."""
-RESTITUTION = 0.5
-"""Of the stops with Newton's law [1]."""
+RESTITUTION = 0.5  # of the stops with Newton's law [1]
 
 entry = partial(Limit, family="missed_crossings")
 

@@ -20,8 +20,6 @@ mass 1 kg and step 1 s a contact is given by its duration in steps, pi/x with x 
 u of the touch in its step.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -123,16 +121,13 @@ def energy_after(method: Integrator, x: float, places: np.ndarray) -> np.ndarray
     return np.array(speeds) ** 2
 
 
-Stepped = CentralDifference | Splitting
-"""Methods with a fixed step and a limit that can be overridden."""
+Stepped = CentralDifference | Splitting  # methods with a fixed step and a limit that can be overridden
 
 ROUNDED = 1e-6
 """Growth per step below this is rounding: differences of 1e-4 of the state are good to 1e-11, of which two
 eigenvalues that have met show the root."""
-SHARE = 0.01
-"""How far beyond a limit a refusal is tried, relative."""
-SLOPE = 1e-4
-"""Size of the displacements from which the slopes of a step are taken, relative to the state."""
+SHARE = 0.01  # how far beyond a limit a refusal is tried, relative
+SLOPE = 1e-4  # size of the displacements from which the slopes of a step are taken, relative to the state
 
 
 def pressed(model: ModalModel, stiffness: float) -> tuple[ImpactOscillator, State]:

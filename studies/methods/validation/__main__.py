@@ -13,8 +13,6 @@ Run:     python -m studies validation
 Writes:  sources.csv (agreeing and differing numbers of each source), rows.csv, differences.png
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Annotated
@@ -45,8 +43,7 @@ SOURCES: Mapping[str, Callable[[], list[Printed]]] = {
     "Woiwode and Krack 2024": two_beams,
 }
 
-FLOOR = 1e-6
-"""Differences below this part of the source's error are drawn there."""
+FLOOR = 1e-6  # differences below this part of the source's error are drawn there
 
 
 @dataclass(frozen=True, kw_only=True)

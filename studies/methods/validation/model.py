@@ -21,8 +21,6 @@ tied to the right beam by w and theta at its root, R (x_right, x_mini) = 0; with
 of R, K = N^T K N and M = N^T M N.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

@@ -22,8 +22,6 @@ Run:     python -m studies work_precision
 Writes:  rows.csv, cheapest.csv, costs.csv, gradients.csv; work_precision.png
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass

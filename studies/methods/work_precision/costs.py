@@ -7,8 +7,6 @@ loop as its documentation recommends, and the beam through the interface of all 
 with which mode 1 errs by less than 1e-8 past a collision.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -33,8 +31,7 @@ SINGLE, BEAM, FREE = EQ_1, HERTZ, "beam, no touch"
 EXCESS, SINGLE_EXCESS, BELOW = letter.TIME_TRACE_EXCESS, 0.02, -0.02
 """F/F_g - 1 of the beam, of Eq. (1), and of a motion without a touch."""
 
-SETTLING = 2000
-"""Drive periods before the clock starts: a free motion falls to 0.92 in each."""
+SETTLING = 2000  # drive periods before the clock starts: a free motion falls to 0.92 in each
 
 COUNTS, COUNTS_QUICK, TOLERANCE = (1, 2, 4, 8, 15, 20, 40), (1, 8), 1e-7
 """Numbers of modes; of heyoka the coarsest decade that brings its error with eight modes below 1e-8."""

@@ -10,8 +10,6 @@ Errors are those of all 18 numbers, each parameter in units of its value, each r
 derivative, against differences of the closed form in 60 digits.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -29,10 +27,8 @@ from studies.physics.parameters import changes_of, parameters_of, with_values
 Array = NDArray[np.float64]
 
 NAMES = ("free_period", "decay_rate", "gap", "restitution", "frequency", "amplitude")
-PERIODS, REPEATS = 20, 11
-"""Drive periods; runs of which the median processor time counts."""
-POLISHED = 3
-"""Steps of Newton's method from the 16 digits of a double to 60 and more."""
+PERIODS, REPEATS = 20, 11  # drive periods; runs of which the median processor time counts
+POLISHED = 3  # steps of Newton's method from the 16 digits of a double to 60 and more
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -11,8 +11,6 @@ that of mode 1 at a strobe in flight; the cost is the time that finds it from th
 The reference has settled and errs by what does not close.
 """
 
-from __future__ import annotations
-
 import math
 import statistics
 import time
@@ -35,8 +33,7 @@ from studies.methods.work_precision.problems import Problem, driven_problem, two
 from studies.methods.work_precision.reference import DIGITS, extended_motion
 
 Name = TypeVar("Name", bound=Hashable)
-Orbit = Callable[[int], object]
-"""orbit(periods): carries a motion on by that many drive periods."""
+Orbit = Callable[[int], object]  # orbit(periods): carries a motion on by that many drive periods
 
 
 def in_turns(runs: Mapping[Name, tuple[Orbit, int]], repeats: int) -> dict[Name, float]:
@@ -71,8 +68,7 @@ of one point at most [s]: a slower run is timed once."""
 SAMPLES = {5: 1024, 11: 1024, 21: 1024, 41: 4096, 81: 16384, 161: 65536}
 """Orders of harmonic balance; samples grow with their square, so that both errors fall together."""
 
-SETTLING = (20, 80, 320)
-"""Drive periods of settling: deviations fall to 0.886 in each."""
+SETTLING = (20, 80, 320)  # drive periods of settling: deviations fall to 0.886 in each
 
 OVERSHOOTS, PHASES = tuple(10.0**-p for p in range(2, 9)), 4
 """Depths of the crossings over the gap, and starts for each."""

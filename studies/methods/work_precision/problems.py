@@ -14,8 +14,6 @@ once, and is compared one drive period after its start. The cost run follows the
 Errors of mode 1 are given in units of what it does at grazing: displacement gap/phi_1, velocity w gap/phi_1.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 
@@ -39,14 +37,11 @@ from studies.shell.scene import Scene, beam_at, hertz_of, single_mode_at
 
 EQ_1, HERTZ = "Eq. (1)", "beam, Hertz contact"
 
-MODES = 8
-"""Modes of the beam: the highest, at 3.3 kHz, swings a fifth of a turn during a contact."""
+MODES = 8  # modes of the beam: the highest, at 3.3 kHz, swings a fifth of a turn during a contact
 
-SETTLING = 4000
-"""Drive periods within which the orbit has settled: a free motion falls to 0.92 in each."""
+SETTLING = 4000  # drive periods within which the orbit has settled: a free motion falls to 0.92 in each
 
-UNSETTLED = 16
-"""Drive periods of the cost run where the motion has no period."""
+UNSETTLED = 16  # drive periods of the cost run where the motion has no period
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -20,8 +20,6 @@ exponentials. The numbers are those of Python's decimal module, thirty times as 
 sine and cosine at the start. Units: SI, q in m kg^0.5.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from decimal import Decimal, getcontext, localcontext
 
@@ -32,15 +30,13 @@ from numpy.polynomial.polynomial import polyder, polyval
 from beam import InvalidValue
 from contact import HertzContact, ImpactOscillator, LinearContact, NewtonRestitution, State
 
-DIGITS = (24, 30)
-"""Decimal digits of the run that is kept and of the one that tells its error."""
+DIGITS = (24, 30)  # decimal digits of the run that is kept and of the one that tells its error
 
 SAMPLES = 24
 """Points of a step, which is some four radians of the fastest mode: a parabola through three of them errs by
 1e-3 of that mode's part in a peak."""
 
-MOST_STEPS = 100_000
-"""Bound of series steps in a motion: a drive period with eight modes takes three hundred."""
+MOST_STEPS = 100_000  # bound of series steps in a motion: a drive period with eight modes takes three hundred
 
 MOST_ITERATIONS = 60
 """Bound of Newton's method: from a bracket of a sixth of a radian it takes six to reach 30 digits."""

@@ -27,8 +27,6 @@ Writes:  readings.csv (a row a shape); of a flat U plate_ends.csv (a row a frequ
          springs.csv (a row a reading, bend radius, gap and ball); the figure finite_amplitude
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from functools import partial
 

@@ -15,8 +15,6 @@ A touch of the nonlinear mode is located to 1e-14 of the gap within a step of a 
 terms leave out is the difference to the frame.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -36,8 +34,7 @@ from studies.shell.scene import Scene, harmonic, nonlinear_mode_at, periods_of, 
 from studies.spring.shape.shapes import TITLES, Reading
 
 Answer = TypeVar("Answer")
-Key = tuple[Reading, float, float]
-"""A spring of the map: its reading, bend radius [m] and ball [kg]."""
+Key = tuple[Reading, float, float]  # a spring of the map: its reading, bend radius [m] and ball [kg]
 
 LEAVES: tuple[Reading, ...] = ("side_by_side", "plain")
 """Readings that bend as one leaf, whatever the radius of the bend."""
@@ -48,8 +45,7 @@ GAPS, BALLS = (4e-3, 7e-3, 15e-3, 20e-3), (0.0, 4e-3, 8e-3)
 EXCESSES = (AMPLITUDE_STABILITY, 1e-3)
 """At which the born period is asked: the letter's stability, and its scale."""
 
-CLOSE = 5e-6
-"""Effective periods of mode and frame that agree to this are the same [s]."""
+CLOSE = 5e-6  # effective periods of mode and frame that agree to this are the same [s]
 
 COARSE = {"spring.elements_per_leg": 24, "spring.elements_on_arc": 24}
 STRAIGHT_ELEMENTS, ARC_ELEMENTS = 12, 24
