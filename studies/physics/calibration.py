@@ -49,7 +49,7 @@ ACCURACY = 1e-10
 KEY_TOLERANCE = 1e-13
 """Relative tolerance of Brent's method on the key; quantities vary with a low power of it."""
 
-BEYOND = 1e9  # stands for an infinite deviation: the search needs its sign only
+BEYOND = 1e9  # replaces an infinite deviation: the search needs its sign only
 
 THINNEST, LOSS_FACTORS, MASSES = 0.02, (1e-9, 5.0), (0.3, 3.0)
 """Where is looked: thickness of the sheet over the present one, from; loss factor of the tape; mass of the

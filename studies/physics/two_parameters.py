@@ -4,7 +4,7 @@
                                        the approach speed of mode 1 (`contact.first_collision`)
 
 at excesses from 1e-6 to 0.3, between which tau and d/v are interpolated in ln v. They make the rebound law of
-Eq. (1) (`contact.DelayedRestitution`), so that energy loss and time delay stand for the higher modes, as the
+Eq. (1) (`contact.DelayedRestitution`), so that energy loss and time delay replace the higher modes, as the
 letter claims; what they leave out is the ringing that the next collision meets.
 
 Below the slowest collision tau and d/v keep their values. There d < 2 v/a, a the deceleration of the tip, so

@@ -100,7 +100,7 @@ def breakdown(
     run.figure("breakdown", figure.draw_scans(shown, tau, letters=run.letters), figure.SCANS)
     born = figure.draw_born(cells, scene.tip.mass_kg, found, letters=run.letters)
     run.figure("born_period", born, figure.BORN)
-    tell(run, outcomes[1], found, known[taus.index(tau)])
+    findings(run, outcomes[1], found, known[taus.index(tau)])
     judge(run, maximal_period(nordmark), outcomes, found, known)
     return {
         "excess_of_letters_chaos_as_rho": nordmark.excess(CHAOS_AT),
@@ -139,7 +139,7 @@ def store(run: Run, scans: Sequence[tuple[Outcome, Mapping[str, Diagram]]], graz
     run.table("breakdown", points, "Strobed points of the scans.", of=StrobePoint, show=())
 
 
-def tell(run: Run, beam: Outcome, found: Outcome | None, own: Island) -> None:
+def findings(run: Run, beam: Outcome, found: Outcome | None, own: Island) -> None:
     """The findings: what is born of the calibrated beam, and of the one found; the island of Eq. (1)."""
     born = word(beam.born_period) if beam.born_period else "no periodic motion"
     saw = f"; the letter saw p{BORN_PERIOD}" * run.letters

@@ -1,7 +1,7 @@
 """The chart as a figure: upward scan left, downward scan right; period above, impacts in a period below.
 
 Colours are the seven of the house style, one after the other with the period, lighter for 8 to 14, so that
-neighbouring periods and period doublings always differ; every region with room for it says its number.
+neighbouring periods and period doublings always differ; every region that is large enough has its number.
 The upright axis is that of the grid (``model.sheared``).
 
 Figures of the settled motions: strobe points and exponents of a scan, and basins on the strobe plane.

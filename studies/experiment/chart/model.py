@@ -132,7 +132,7 @@ def folds_of_beam(
 ) -> list[Fold]:
     """The folds of the beam in and a little below the bands `near`, above the excess `lowest`.
 
-    At those of `frequencies` [Hz] that lie there, or where these are few at some more within their range.
+    At the `frequencies` [Hz] that lie there, or where these are few at some more within their range.
     """
     found = []
     for band in near:

@@ -24,7 +24,7 @@ from studies.shell.scene import READOUT, Scene, single_mode_at
 CUT, QUICK_CUT = (np.linspace(-0.016, 0.06, 39), 600), (np.linspace(-0.016, 0.06, 11), 100)
 """Amplitudes of the cut [1] and drive periods in the averages of the exponents; of the small form."""
 
-SIGNIFICANT = 3.0  # standard errors by which an exponent must differ from zero to be told from it
+SIGNIFICANT = 3.0  # standard errors by which an exponent must differ from zero to count
 
 ALIGN = 20
 """Periods in which tangents find their direction: the slowest contraction between two of them is e^-0.08."""
@@ -48,8 +48,7 @@ class Settlement:
 
 
 def kind_of(strobed: StroboscopicMap, settled: Settled[State], cycles: int) -> tuple[str, Exponents]:
-    """Chaos told from a long period or a slow transient by the exponents, averages over `cycles` drive
-    periods."""
+    """The kind of motion, and its exponents: averages over `cycles` drive periods where it has no period."""
     if settled.period:
         kind = PERIODIC if settled.impacts else WITHOUT
         return kind, orbit_exponents(strobed, settled.end, settled.period)
@@ -100,7 +99,7 @@ NEAR, OF_EXCESS = 1e-5, 0.1
 and at most in excesses below grazing."""
 
 MOST_PERIODS, STRETCH = 4000, 32
-"""Bound of a motion in the basins (what has not been told by then is something else); strobes looked at
+"""Bound of a motion in the basins (what has reached no orbit by then is something else); strobes looked at
 together."""
 
 

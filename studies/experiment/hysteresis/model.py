@@ -87,7 +87,7 @@ class Folds:
 
 
 def map_fold(nordmark: NordmarkMap, m: int, kick: float | None = None) -> float | None:
-    """The fold of the map where it lies below grazing; `kick` stands for 1 + tau in the scale of rho."""
+    """The fold of the map where it lies below grazing; `kick` replaces 1 + tau in the scale of rho."""
     found = fold_excess(nordmark, m)
     scale = 1.0 if kick is None else (kick / (1.0 + nordmark.restitution)) ** 2
     return None if found is None or found >= 0.0 else scale * found

@@ -1,4 +1,4 @@
-"""Clouds of strobe points in noise of the drive: which p_m can be told apart, and which is still there.
+"""Clouds of strobe points in noise of the drive: which p_m can be distinguished, and which is still there.
 
 At an excess of 1e-3 the m strobe points of p_m become m clouds, sorted by the strobes since the last impact.
 Over `WAITS` waitings neighbouring clouds are separate if they are further apart than wide (90 % of the

@@ -71,8 +71,8 @@ def intervals_of(single: ImpactOscillator, excess: float) -> list[Interval]:
     ends = dict[int, tuple[float, float]]()
     for f, m in PERIODS.items():
         low, high = (2.0 * k / ((2.0 * k + 1.0) * f) for k in (m - 1, m))  # upper edges of two bands
-        room = high - low
-        ends[m] = longest(partial(is_born, single, excess, f), low - 0.3 * room, high + 1.2 * room)
+        width = high - low
+        ends[m] = longest(partial(is_born, single, excess, f), low - 0.3 * width, high + 1.2 * width)
 
     def shared(words: str, periods: Sequence[int], error: float = 0.0) -> Interval:
         known = [(*ends[m], m, error / f) for f, m in PERIODS.items() if m in periods]

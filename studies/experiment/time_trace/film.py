@@ -131,7 +131,7 @@ FLIGHT_STEPS = 120.0  # steps of the flight in a whole film, were there no conta
 
 APERIODIC = 4  # drive periods shown of a motion that has no period
 
-ROOM, MOST = 0.07, 100.0
+LARGEST, MOST = 0.07, 100.0
 """Largest enlarged departure over the greatest extent of the strip; enlargement beyond which nothing is
 seen."""
 
@@ -202,9 +202,9 @@ def drawn_shapes(
 ) -> tuple[Array, float]:
     """Displacements of the points of the mesh relative to the base (n_frames, n_points, 3) [m], and M [1].
 
-    `coordinates` (n_frames, n_modes) are those of the coupled modes.
+    `coordinates` (n_frames, n_modes) belong to the coupled modes.
 
-    M is the largest whole number with which the departures stay below `ROOM`, unless it is given.
+    M is the largest whole number with which the departures stay below `LARGEST`, unless it is given.
     """
     kept = np.flatnonzero(modes.coupled)[: coordinates.shape[1]]
     phi, strip = modes.phi[kept], np.unique(mesh.hexahedra)
@@ -217,6 +217,6 @@ def drawn_shapes(
     carried[:, ball] = ((coordinates @ phi)[:, None] * drive)[:, None]
     if magnification is None:
         largest = float(np.linalg.norm(departures[:, strip], axis=2).max())
-        room = ROOM * float(np.ptp(mesh.points[strip], axis=0).max())
-        magnification = min(MOST, max(1.0, math.floor(room / largest))) if largest > 0.0 else 1.0
+        bound = LARGEST * float(np.ptp(mesh.points[strip], axis=0).max())
+        magnification = min(MOST, max(1.0, math.floor(bound / largest))) if largest > 0.0 else 1.0
     return carried + magnification * departures, magnification

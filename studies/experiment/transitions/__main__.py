@@ -79,7 +79,7 @@ def transitions(
         run.figure(stem, drawn, f"{caption}: {TITLES[name]}.")
     if (other := ends_beside_folds(rows)) and run.model_choice:
         run.warn(f"{other}: modes were chosen for folds, and more of them (modes.count) can move this end")
-    tell(run, rows)
+    findings(run, rows)
     compare(run, rows, parameters)
     seen = [at.rows for at in found if at.rows[0].letter is not None]
     agrees = [of_frequency[0].frequency_hz for of_frequency in seen if judge(run, of_frequency)]
@@ -104,7 +104,7 @@ def in_words(rows: Sequence[Transition]) -> str:
     return words({row.description: row.period for row in rows})
 
 
-def tell(run: Run, rows: Sequence[Transition]) -> None:
+def findings(run: Run, rows: Sequence[Transition]) -> None:
     """The findings on the beam: its born periods, and the deepest of its orbits below grazing."""
     beams = [row for row in rows if row.description == "beam" and row.period is not None]
     ours = {row.frequency_hz: row.period for row in beams}

@@ -65,11 +65,11 @@ def sentences(rows: Sequence[LeastModel]) -> Iterator[str]:
 def questions(scene: Scene, quick: bool) -> list[tuple[str, float]]:
     """Quantities and drive frequencies [Hz]."""
     middle, drives = middle_of(scene), sorted(scene.drive.frequencies_hz)
-    asked = [(f"frequency {number}", middle) for number in ((1, 3) if quick else (1, 3, 5, 10))]
-    asked += [(name, middle) for name in ("restitution", "delay", "kick")]
-    asked += [("born_period", f) for f in ([middle] if quick else drives)]
-    asked += [("fold", f) for f in ([middle] if quick else drives[:3])]
-    return asked if quick else [*asked, ("tip_trace", middle)]
+    found = [(f"frequency {number}", middle) for number in ((1, 3) if quick else (1, 3, 5, 10))]
+    found += [(name, middle) for name in ("restitution", "delay", "kick")]
+    found += [("born_period", f) for f in ([middle] if quick else drives)]
+    found += [("fold", f) for f in ([middle] if quick else drives[:3])]
+    return found if quick else [*found, ("tip_trace", middle)]
 
 
 def draw(rows: Sequence[LeastModel]) -> Figure:

@@ -38,7 +38,7 @@ from studies.physics.least_model import (
     LADDER,
     REFERENCE,
     Answer,
-    Ask,
+    AnswerOf,
     At,
     Distance,
     collisions,
@@ -142,7 +142,7 @@ def _born_periods(at: At, frequency: float) -> Answer:
 
 
 _SHARED = {name: found[:2] for name, found in least_model.QUANTITIES.items()}
-QUANTITIES: Mapping[str, tuple[Ask, Distance, str, float]] = {
+QUANTITIES: Mapping[str, tuple[AnswerOf, Distance, str, float]] = {
     "frequency": (
         lambda at, f: at(f).model.frequencies_hz,
         lambda a, b: largest_error(a / b, b / b),
@@ -184,11 +184,11 @@ class Search:
     def __init__(self, models: Models, quantity: str, frequency: float, sharp: Choice | None = None) -> None:
         name, _, number = quantity.partition(" ")
         self.models, self.quantity, self.frequency = models, quantity, frequency
-        ask, distance, self.unit, self.tolerance = QUANTITIES[name]
+        answer_of, distance, self.unit, self.tolerance = QUANTITIES[name]
         self.sharp = sharp or models.sharp
 
         def answer(choice: Choice) -> Answer:
-            found = ask(lambda f: models.oscillator(choice, f), frequency)
+            found = answer_of(lambda f: models.oscillator(choice, f), frequency)
             if not number or found is None:
                 return found
             return found[int(number) - 1 : int(number)] if int(number) <= choice.modes else None

@@ -10,7 +10,7 @@ sundials   CVODE by scikit-sundae: Adams-Moulton up to order 12 or BDF up to ord
 
 They integrate from one touch or release to the next, which their own root finding has to notice, and are
 started anew there. Nothing is shared with the exact methods but the
-parameters. Dashpots, constant loads and other laws are refused; a tip that comes to rest on the stop ends in
+parameters. Dashpots, constant loads and other laws are refused; a tip that rests on the stop ends in
 an error.
 
 No library is imported before a run needs it.
@@ -81,5 +81,5 @@ class OutsideSolver(Integrator):
             raise ImportError(needs(f"{module} is not installed: {self.solver}", "heyoka scikit-sundae"))
 
     def follow(self, oscillator: ImpactOscillator, run: Run) -> Trajectory:
-        """The motion of `run`; evaluations are those of the right-hand side, heyoka's its Taylor steps."""
+        """The motion of `run`; evaluations are of the right-hand side, heyoka's its Taylor steps."""
         return pieced(oscillator, run, self.tolerance, SOLVERS[self.solver][1])

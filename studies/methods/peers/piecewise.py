@@ -8,8 +8,8 @@
 
 In contact N is not cut off for d < 0 (Hertz's is continued by zero), so that the right-hand side is smooth
 past the release, within the step that finds it. What is watched rises through zero: d less a bound of its
-rounding in flight, -d in contact. Absolute tolerances are those of one energy: with V the largest of |q'|,
-|omega q| over the start, the steady motion and a swing that reaches the stop, velocities get tolerance V,
+rounding in flight, -d in contact. Absolute tolerances follow from one energy: with V the largest of |q'|,
+|omega q| over the start, the steady motion and a motion that reaches the stop, velocities get tolerance V,
 displacements tolerance V/omega_k. The right-hand side is compiled; in numpy it would make SciPy and CVODE a
 third slower.
 """
@@ -76,14 +76,14 @@ def penetration(y: Array, modes: Array, scalars: Array) -> float:
 def rates(t: float, y: Array, out: Array, modes: Array, scalars: Array, kind: int) -> None:
     """Fill `out` with dy/dt; `modes` (4, n): omega^2, c, phi, P; `scalars`: w, phase, gap, k."""
     n = modes.shape[1]
-    depth, force, swing = penetration(y, modes, scalars), 0.0, math.sin(scalars[0] * t + scalars[1])
+    depth, force, shake = penetration(y, modes, scalars), 0.0, math.sin(scalars[0] * t + scalars[1])
     if kind == LINEAR:
         force = scalars[3] * depth
     elif kind == HERTZ and depth > 0.0:
         force = scalars[3] * depth * math.sqrt(depth)
     for k in range(n):
         out[k] = y[n + k]
-        out[n + k] = modes[3, k] * swing - modes[1, k] * y[n + k] - modes[0, k] * y[k] - modes[2, k] * force
+        out[n + k] = modes[3, k] * shake - modes[1, k] * y[n + k] - modes[0, k] * y[k] - modes[2, k] * force
 
 
 def numbers_of(oscillator: ImpactOscillator, clock: float = 0.0) -> tuple[Array, Array]:
@@ -113,7 +113,7 @@ class Equations:
         self.modes, self.scalars = numbers_of(oscillator, run.clock)
         w, amplitude = float(self.scalars[0]), 0.0 if drive is None else drive.amplitude
         lowest = w if w > 0.0 else 2.0 * math.pi / oscillator.period
-        pace = np.maximum(model.omega, lowest)
+        omega = np.maximum(model.omega, lowest)
         vectors = (
             run.start.velocity,
             model.omega * run.start.displacement,
@@ -121,8 +121,8 @@ class Equations:
         )
         reach = lowest * oscillator.stop.gap / math.sqrt(self.compliance)
         speed = max(reach, *(float(np.linalg.norm(vector)) for vector in vectors)) or 1.0
-        self.absolute = tolerance * np.concatenate([speed / pace, np.full(self.n, speed)])
-        self.rounding = 32.0 * EPS * (oscillator.stop.gap + float(np.abs(model.phi) @ (speed / pace)))
+        self.absolute = tolerance * np.concatenate([speed / omega, np.full(self.n, speed)])
+        self.rounding = 32.0 * EPS * (oscillator.stop.gap + float(np.abs(model.phi) @ (speed / omega)))
 
     def tip(self, y: Array) -> tuple[float, float]:
         """Penetration [m] and its rate [m/s]."""

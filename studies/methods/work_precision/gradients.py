@@ -6,8 +6,8 @@ by the six parameters of `NAMES`.
     exact        tangents through flights and impacts (contact.sensitivity.motion)
     differences  central, of the same motion, at relative steps of 1e-3 ... 1e-12
 
-Errors are those of all 18 numbers, each parameter in units of its value, each result in units of its largest
-derivative, against differences of the closed form in 60 digits.
+An error is the norm over 18 numbers, each parameter in units of its value, each result in units of its
+largest derivative, against differences of the closed form in 60 digits.
 """
 
 from collections.abc import Callable, Sequence

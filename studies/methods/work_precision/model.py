@@ -26,7 +26,7 @@ import numpy as np
 from contact import ContactError, State, simulate
 from contact.integrators import Integrator
 from contact.orbits import Shooting
-from studies.methods.crossings import Swing
+from studies.methods.crossings import Crossing
 from studies.methods.work_precision.harmonic_balance import balanced
 from studies.methods.work_precision.methods import PERIODIC, Sweep
 from studies.methods.work_precision.problems import Problem, driven_problem, two_masses
@@ -137,12 +137,14 @@ def error_of(reference: Reference, method: Integrator) -> float:
 
 def missed_share(problem: Problem, method: Integrator) -> float | None:
     """Share of the crossings not seen; a run that fails has seen none. None without a drive, for a stop that
-    is not met by swinging [1]."""
+    is not met freely [1]."""
     if problem.oscillator.drive is None:
         return None
-    swing = Swing.of(problem.oscillator.model, problem.oscillator.stop, RINGING)
+    crossing = Crossing.of(problem.oscillator.model, problem.oscillator.stop, RINGING)
     touches = [
-        swing.touch(method, depth, lead) for depth in OVERSHOOTS for lead in swing.leads(PHASES).tolist()
+        crossing.touch(method, depth, lead)
+        for depth in OVERSHOOTS
+        for lead in crossing.leads(PHASES).tolist()
     ]
     return float(np.mean(np.isnan(touches)))
 

@@ -37,7 +37,7 @@ from studies.shell.scene import Scene, beam_at, hertz_of, single_mode_at
 
 EQ_1, HERTZ = "Eq. (1)", "beam, Hertz contact"
 
-MODES = 8  # modes of the beam: the highest, at 3.3 kHz, swings a fifth of a turn during a contact
+MODES = 8  # modes of the beam: the highest, at 3.3 kHz, turns by a fifth during a contact
 
 SETTLING = 4000  # drive periods within which the orbit has settled: a free motion falls to 0.92 in each
 
@@ -59,7 +59,7 @@ class Problem:
     """Time at which mode 1 is compared, and length of the error run; with a drive it goes on beyond the
     probe, so that no step is cut short for it [s]."""
     period: float
-    """Unit of time: the drive period, or the swung beam's whole run [s]."""
+    """Unit of time: the drive period, or the free beam's whole run [s]."""
     size: float
     speed: float
     """Scales of mode 1's displacement and velocity [m kg^0.5], [m kg^0.5/s]."""

@@ -82,11 +82,11 @@ def compare_plate(scene: Scene, run: Run) -> list[OrbitEnds]:
         caption += f" Plates and beam differ in the sign of the end at {', '.join(doubtful)} Hz."
     run.table("plate_ends", orbits, caption, of=OrbitEnds)
     kept = "keeps every period" if all(row.same_period for row in orbits) else "changes a period"
-    told = f"As a plate the spring {kept} that is born"
+    said = f"As a plate the spring {kept} that is born"
     if factors := [f for row in known if min(row.factors) > 0.0 for f in row.factors]:
         most = max(*factors, *(1.0 / factor for factor in factors))
-        told += f"; the ends of the orbits move by a factor of up to {most:.1f}"
-    run.finding(f"{told}.")
+        said += f"; the ends of the orbits move by a factor of up to {most:.1f}"
+    run.finding(f"{said}.")
     return orbits
 
 
@@ -104,5 +104,5 @@ def finite_amplitude(scene: Scene, run: Run) -> list[Survival]:
     row = next(r for r in rows if (r.reading, r.bend_radius_m, r.gap_m, r.tip_mass_kg) == own)
     kept = f" and keeps {row.survive or 'none'} of the letter's periods" if run.letters else ""
     bends = "softens" if row.kappa < 0.0 else "stiffens"
-    run.finding(f"Folded with the scene's bend, the strip {bends} as it swings{kept}.")
+    run.finding(f"Folded with the scene's bend, the strip {bends} at large amplitudes{kept}.")
     return rows

@@ -8,8 +8,8 @@
 
 Readings: `folded` (both ends clamped, the ball on the bend), `side_by_side` (two legs in the plane of the
 sheet) and `plain`, a single leaf; in the plane a channel is a plain strip. Sheets are as thick as the free
-period asks. With the scene's own ball and gap the frame with finite rotations is solved as well: where its
-effective period differs by more than 0.005 ms, the cubic stiffness is the one that gives the frame's.
+period requires. With the scene's own ball and gap the frame with finite rotations is solved as well: where
+its effective period differs by more than 0.005 ms, the cubic stiffness is the one that gives the frame's.
 
 A touch of the nonlinear mode is located to 1e-14 of the gap within a step of a Taylor series; what the cubic
 terms leave out is the difference to the frame.
@@ -43,7 +43,7 @@ GAPS, BALLS = (4e-3, 7e-3, 15e-3, 20e-3), (0.0, 4e-3, 8e-3)
 """Bend radii, gaps [m] and masses of ball and mount [kg] beside the scene's own."""
 
 EXCESSES = (AMPLITUDE_STABILITY, 1e-3)
-"""At which the born period is asked: the letter's stability, and its scale."""
+"""At which the born period is computed: the letter's stability, and its scale."""
 
 CLOSE = 5e-6  # effective periods of mode and frame that agree to this are the same [s]
 
@@ -71,7 +71,7 @@ class Survival:
 
 
 def reading_of(scene: Scene, reading: str, radius: float, ball: float) -> Scene:
-    """The scene with its spring read so, the sheet as thick as the free period asks."""
+    """The scene with its spring read so, the sheet as thick as the free period requires."""
     kind = {"folded": "folded_u", "side_by_side": "flat_u"}.get(reading, "cantilever")
     changed = scene.replace(
         {"spring.kind": kind, "spring.bend_radius_m": radius, "tip.mass_kg": ball, **COARSE}

@@ -27,7 +27,7 @@ MODES = 30  # symmetric modes computed for a plate, with which the kick has conv
 COARSE, FINE = (1, 2), (2, 3)
 """Cells over the radius of the seat and over the rim beside it, in the coarser of two meshes, in pairs."""
 
-WIDEST_SEAT = 0.8  # radius of the seat over half of the width, at most: the rim beside it needs room
+WIDEST_SEAT = 0.8  # radius of the seat over half of the width, at most: the rim beside it needs cells
 
 PLATES = ("point", "seat")  # mounts of the ball: on a point of the sheet, and on a rigid seat
 

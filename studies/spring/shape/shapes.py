@@ -67,7 +67,7 @@ MODES = 14  # modes looked through for the first of each kind
 
 @dataclass(frozen=True, kw_only=True)
 class Shape:
-    """One reading with its sizes [m]; `flange`: how far those of a channel stand out of the web, else 0."""
+    """One reading with its sizes [m]; `flange`: how far flanges stand out of the web of a channel, else 0."""
 
     reading: Reading
     material: Material
