@@ -1,7 +1,5 @@
 """Enough model and not more: against a larger reference, one step less, and the quick estimate of studies."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import asdict, replace
 from functools import cache

@@ -1,7 +1,5 @@
 """`python -m studies --all`: what runs, what is not run again, what a failure or an interruption leaves."""
 
-from __future__ import annotations
-
 import importlib
 import json
 import signal

@@ -1,7 +1,5 @@
 """Springs from scenes, and the keys that are fitted to measured numbers."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What a motion settles on by its largest Lyapunov exponent, and basins."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,8 +1,6 @@
 """One approach to the plate: limits of restitution, delay and kick, closed relations, what is read off the
 curves, and the study."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

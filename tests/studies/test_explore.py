@@ -1,7 +1,5 @@
 """The window to explore, off screen: its sliders are moved, and its panels show the physics."""
 
-from __future__ import annotations
-
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest

@@ -1,7 +1,5 @@
 """Whether the spring of a scene may be taken as linear at its gap: kappa, effective periods, what is born."""
 
-from __future__ import annotations
-
 import pytest
 
 from beam import FiniteRotation
@@ -15,8 +13,7 @@ from studies.shell.scene import (
 )
 from studies.spring.shape.finite_amplitude import effective, frame_period, matched, reading_of, survivals
 
-OTHER_BALL = 6e-3
-"""Of the springs whose frame is not solved [kg]."""
+OTHER_BALL = 6e-3  # of the springs whose frame is not solved [kg]
 
 SPRINGS = {"wide": ("folded", 0.03, OTHER_BALL), "legs": ("side_by_side", 9e-3, OTHER_BALL)}
 

@@ -1,7 +1,5 @@
 """Harmonic balance: exact where the motion is linear, and the orders that its kinks leave elsewhere."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """The chain of descriptions from the map to the beam, and what it answers."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

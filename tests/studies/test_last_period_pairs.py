@@ -1,7 +1,5 @@
 """The letter's six pairs: intervals of the free period, each by a second route."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

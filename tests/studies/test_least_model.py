@@ -1,7 +1,5 @@
 """The least number of modes: as good as is asked, no more, and checked against following the orbits."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from itertools import product

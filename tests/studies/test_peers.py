@@ -1,7 +1,5 @@
 """Outside solvers against the exact methods, each held to what its tolerance promises."""
 
-from __future__ import annotations
-
 import math
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """The soft wall: power laws of the kick, the period doubling at grazing, and the beam."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """The flat U as a plate against closed forms, strip theory and an independent program; its modal models."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from types import SimpleNamespace

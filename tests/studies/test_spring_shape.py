@@ -1,7 +1,5 @@
 """The readings of "U shaped": sizes by second routes, twist modes."""
 
-from __future__ import annotations
-
 import math
 
 import pytest

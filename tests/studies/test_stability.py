@@ -1,7 +1,5 @@
 """Where methods fail: one limit a method, theory against the motion, and where the package refuses."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

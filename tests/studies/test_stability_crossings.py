@@ -1,7 +1,5 @@
 """Crossings that methods miss and impacts that accumulate: theory against what the methods do."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """The settled orbit against time: its period, its collision, its spectrum, and what the study writes."""
 
-from __future__ import annotations
-
 from dataclasses import fields
 from types import SimpleNamespace
 

@@ -1,7 +1,5 @@
 """The tour runs from top to bottom, and what it prints is what the physics asks for."""
 
-from __future__ import annotations
-
 import runpy
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Published numbers: the study, and each source by another route."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

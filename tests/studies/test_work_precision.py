@@ -1,7 +1,5 @@
 """Work and precision: reference by closed forms and a second route, orders, front, known crossings."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
