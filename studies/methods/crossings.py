@@ -33,8 +33,7 @@ class Crossing:
     """
 
     oscillator: ImpactOscillator
-    height: np.ndarray
-    """b_k [1]."""
+    height: np.ndarray  # b_k [1]
     lead: float
     spread: float
     tail: float

@@ -32,20 +32,8 @@ from studies.shell.scene import Scene, band_of, beam_at, corresponding, nordmark
 CHAIN = ("map", "single_mode", "measured_kick", "kick_of_velocity", "two_parameters", "all_mode_kick", "beam")
 DESCRIPTIONS = ("map_printed", "map_measured_kick", *CHAIN)
 
-CAUSES = dict(
-    zip(
-        (
-            "truncation_of_the_map",
-            "size_of_the_kick",
-            "kick_against_velocity",
-            "delay",
-            "higher_modes_in_the_flight",
-            "ringing_met_by_the_next_collision",
-        ),
-        pairwise(CHAIN),
-        strict=True,
-    )
-)
+NAMES = "truncation_of_the_map size_of_the_kick kick_against_velocity delay higher_modes_in_the_flight"
+CAUSES = dict(zip(f"{NAMES} ringing_met_by_the_next_collision".split(), pairwise(CHAIN), strict=True))
 """Cause -> the two neighbours in the chain between which it lies."""
 
 FREQUENCIES_HZ = (19.6, 23.8)  # of the letter's spring; others at the same f T

@@ -145,8 +145,7 @@ class FilmedOrbit:
     """
 
     duration: float
-    contacts: list[tuple[float, float]]
-    """Begin and end of each [s]."""
+    contacts: list[tuple[float, float]]  # begin and end of each [s]
     time: Array
     slowed: Array
     tip: Array

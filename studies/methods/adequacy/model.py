@@ -3,18 +3,13 @@
     Eq. (1)   Eq. (1) of the letter: one mode of measured period and decay rate, Newton's law with tau
     beam      the finite-element model of the spring, or its measured modes
 
-A residual mode replaces the modes left out (``ModalModel.with_residual_mode``).  The quantities:
+A residual mode replaces the modes left out (``ModalModel.with_residual_mode``).  Quantities and errors are
+as in ``studies.physics.least_model``, at one drive frequency each, with three differences:
 
-    frequency K      K-th frequency of the modes that move the ball [Hz]; error relative
-    restitution      of the first collision at excess 0.0065, 0.013 and 0.026 [1]; error absolute
-    delay            of these collisions over v/a, the time in which the tip would turn by itself; absolute
-    kick             of these collisions [1]; error absolute
+    delay            of the three collisions over v/a, the time in which the tip would turn by itself; absolute
     born_period      period of the settled orbit at excess 1e-3, at the drive frequency and at both ends of
                      what the error of the free period (letter, Fig. 2) makes of it; error: how many differ
-    fold             F/F_g - 1 at which the p_m orbit has its fold, by shooting; error relative to it, or to
-                     the letter's amplitude stability where it is smaller; infinite if m differs
-    tip_trace        tip over one period of the orbit settled at excess 0.013; error: root mean square
-                     over the gap
+    fold             by shooting
 
 A model without an answer (no such mode, no return of the single mode, no orbit) is infinitely far off.
 """

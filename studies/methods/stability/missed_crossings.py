@@ -53,8 +53,7 @@ class Trial:
     crossing: Crossing
     method: Integrator
     label: str
-    kind: str
-    """"exact", "step" (and samples) or "control" of the error."""
+    kind: str  # "exact", "step" (and samples) or "control" of the error
     step: float | None = None
     """Between its looks [s]; None for a method that searches between its steps, or chooses them itself."""
 

@@ -3,11 +3,8 @@
 Claim: six sources print frequencies, folds, doublings, grazing points or motions. This package has each of
 these numbers within the error of its source, or a third route shows which side is right.
 
-    one mode, hard or soft wall    Ghosh and Simpson; COCO 15.2; SDND122; the Aberdeen rig
-    two bars                       SDNL111: the contact of two uniform bars, tip to tip
-    two beams                      Woiwode and Krack: measured frequencies of both beams
-
-Each source keeps its own numbers; the scene is not used. A note gives the third route.
+Four of them have one mode and a wall, one has two bars, one two beams (`model`). Each source keeps its own
+numbers; the scene is not used. A note gives the third route.
 
 Run:     python -m studies validation
 Writes:  sources.csv (agreeing and differing numbers of each source), rows.csv, differences.png

@@ -49,27 +49,20 @@ class Problem:
     """A motion to be computed by every method."""
 
     name: str
-    title: str
-    """Under which its rows are listed; what a figure says."""
+    title: str  # under which its rows are listed; what a figure says
     oscillator: ImpactOscillator
-    start: State
-    """Of the error run."""
+    start: State  # of the error run
     probe: float
     duration: float
     """Time at which mode 1 is compared, and length of the error run; with a drive it goes on beyond the
     probe, so that no step is cut short for it [s]."""
-    period: float
-    """Unit of time: the drive period, or the free beam's whole run [s]."""
+    period: float  # unit of time: the drive period, or the free beam's whole run [s]
     size: float
-    speed: float
-    """Scales of mode 1's displacement and velocity [m kg^0.5], [m kg^0.5/s]."""
+    speed: float  # scales of mode 1's displacement and velocity [m kg^0.5], [m kg^0.5/s]
     cost_start: State
-    cost_periods: int
-    """On the settled orbit; units of time in which that repeats."""
-    contact_time: float
-    """Of the first touch, 0 for an impact law [s]."""
-    unit: str = "drive period"
-    """What a cost is the time for."""
+    cost_periods: int  # on the settled orbit; units of time in which that repeats
+    contact_time: float  # of the first touch, 0 for an impact law [s]
+    unit: str = "drive period"  # what a cost is the time for
 
 
 def driven_problem(name: str, title: str, oscillator: ImpactOscillator) -> Problem:

@@ -15,12 +15,9 @@ as stiffness and strain (beam.space). Each shape is brought to omega_1^2 = (2 pi
 thickness, the channel by its flanges. The scene gives length, width, bend radius, sheet material, ball and
 period; its tape plays no part. The rotary inertia of ball and mount counts about every axis.
 
-The beam of the scene simplifies the flat U, which is a sheet. As a Kirchhoff plate its deflection w obeys
-
-    int D ((1 - nu) w_ij v_ij + nu lap w lap v) + m (w.. + y..) v dA + M (w.. + y..) v (tip) = F v (tip)
-
-(symbols in `plate`), and in some of its modes the legs twist. Question: does the plate change the born
-periods and the ends of the orbits? This part needs spring.kind = "flat_u" and a harmonic drive.
+The beam of the scene simplifies the flat U, which is a sheet. As a Kirchhoff plate (`plate`) it has modes in
+which the legs twist. Question: does the plate change the born periods and the ends of the orbits? This part
+needs spring.kind = "flat_u" and a harmonic drive.
 
 Run:     python -m studies shape [--quick]
 Writes:  readings.csv (a row a shape); of a flat U plate_ends.csv (a row a frequency);
