@@ -30,6 +30,7 @@ import math
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from scipy.optimize import brentq
@@ -123,24 +124,17 @@ def strip_decay_rate(scene: Scene) -> float:
     return float(modes.omega[-1] * np.sum([stretching, bending] * energies) / np.sum(energies))
 
 
-def calibrate_thickness(scene: Scene, free_period_s: float) -> Scene:
-    """The scene with the sheet so thick that mode 1, damped, has this period [s]."""
-    return solve_for(
-        "spring.thickness_m",
-        scene,
-        free_period,
-        free_period_s,
-        name="free period",
-        unit="s",
-        between=thicknesses(scene),
-    )
+def calibrate_thickness(
+    scene: Scene, free_period_s: float, period_of: Callable[[Scene], float] = free_period
+) -> Scene:
+    """The scene with the sheet so thick that mode 1, damped, has this period [s], by `period_of` a scene.
 
-
-def thicknesses(scene: Scene) -> tuple[float, float]:
-    """Where the thickness of the sheet is looked for [m]: up to its width, and to what the bend allows."""
-    keys = scene.spring
+    The sheet is looked for up to the width of the spring, and to the thickness that the bend allows.
+    """
+    keys, search = scene.spring, partial(solve_for, "spring.thickness_m", name="free period", unit="s")
     thickest = min(keys.width_m, 1.999 * keys.bend_radius_m) if keys.kind == "folded_u" else keys.width_m
-    return min(keys.thickness_m, thickest) * THINNEST, thickest
+    between = min(keys.thickness_m, thickest) * THINNEST, thickest
+    return search(scene, period_of, free_period_s, between=between)
 
 
 def calibrate_damping(scene: Scene, decay_rate_per_s: float) -> Scene:
@@ -271,15 +265,8 @@ def with_mass_ratio(scene: Scene, ratio: float, frequency: float) -> Scene:
     def weighted(trial: Scene) -> Scene:
         return trial.replace({"tip.mass_kg": ratio * leaf_mass(trial)}, provenance=CALIBRATED)
 
-    fitted = solve_for(
-        "spring.thickness_m",
-        scene,
-        lambda trial: free_period(weighted(trial)),
-        scene.single_mode.free_period_s,
-        name="free period",
-        unit="s",
-        between=thicknesses(scene),
-    )
+    period = scene.single_mode.free_period_s
+    fitted = calibrate_thickness(scene, period, lambda trial: free_period(weighted(trial)))
     return calibrate_gap(weighted(fitted), letter.DRIVE_AMPLITUDE_M, frequency)
 
 

@@ -42,7 +42,7 @@ LARGEST = 0.05
 """Largest displacement of a drawn shape over the greatest extent of the strip; legs do not cross yet."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class NaturalMode:
     """One mode."""
 
@@ -94,15 +94,8 @@ def rows_of(scene: Scene, solved: Modes | None) -> list[NaturalMode]:
         rates = damping_of(scene).decay_rates(solved)
         columns = (solved.frequencies_hz, rates, solved.phi, solved.participation, solved.coupled)
     return [
-        NaturalMode(
-            mode=number,
-            frequency_hz=float(f),
-            decay_rate_per_s=float(c),
-            tip_value=float(phi),
-            participation=float(gamma),
-            coupled=bool(moves),
-        )
-        for number, (f, c, phi, gamma, moves) in enumerate(zip(*columns, strict=True), start=1)
+        NaturalMode(number, *map(float, row), coupled=bool(moves))
+        for number, (*row, moves) in enumerate(zip(*columns, strict=True), start=1)
     ]
 
 

@@ -144,12 +144,10 @@ def time_trace(
 
 def repeats(period: int) -> str:
     """When the motion repeats."""
+    if not period:
+        return "the motion has no period up to 64 drive periods"
     whole = "each drive period" if period == 1 else f"{period} drive periods"
-    return (
-        f"the settled motion repeats after {whole}"
-        if period
-        else "the motion has no period up to 64 drive periods"
-    )
+    return f"the settled motion repeats after {whole}"
 
 
 def findings(run: Run, period: int, impacts: int, found: Sequence[Collision], higher: Sequence[int]) -> None:

@@ -36,10 +36,8 @@ def draw_trace(trace: Trace, near: CloseUp | None, stops: Sequence[Stop], unit: 
         axis.plot(1e3 * trace.time[::step], 1e3 * shown[::step], **motion)
         axis.margins(x=0.0)
         for at, touch in zip(1e3 * trace.impact_times, trace.impacts, strict=True):
-            where, colour = (
-                f" on plate {touch.stop}" if len(stops) > 1 else "",
-                OF_STOPS[touch.stop % len(OF_STOPS)],
-            )
+            where = f" on plate {touch.stop}" if len(stops) > 1 else ""
+            colour = OF_STOPS[touch.stop % len(OF_STOPS)]
             axis.axvline(at, **{**MARK, "color": colour}, label=f"impact{where}")
         plotting.panel(axis, number, (f"ball: {title}", "read-out point")[number])
     plotting.label(tip.yaxis, "ball", "mm")

@@ -152,10 +152,8 @@ def compare(run: Run, rows: Sequence[Transition], parameters: Sequence[Extracted
     close = sum(bool(a and b and 1.0 / NEARLY < a / b < NEARLY) for a, b in ends)
     of_map = sum(one.map == beams[one.frequency_hz].period for one in found)
     if same:
-        where, missed = (
-            "every frequency" if len(same) == len(found) else "some frequencies",
-            len(found) - close,
-        )
+        missed = len(found) - close
+        where = "every frequency" if len(same) == len(found) else "some frequencies"
         end = f"; its orbits end elsewhere at {missed} of them" if missed else ""
         words = "Eq. (1) with the beam's restitution and time delay has the beam's period at"
         run.finding(f"{words} {where}{end}.")

@@ -88,10 +88,8 @@ def draw(rows: Sequence[LeastModel]) -> Figure:
                 if over > widest:
                     look |= {"marker": ">", "color": "0.4", "label": "beyond the axis"}
                 axis.plot(min(over, widest), place, **look)
-            across, words = (
-                axis.get_yaxis_transform(),
-                row.least.removeprefix("beam, ").removesuffix(" contact"),
-            )
+            across = axis.get_yaxis_transform()
+            words = row.least.removeprefix("beam, ").removesuffix(" contact")
             beside = {"va": "center", "fontsize": plotting.NOTE}
             axis.annotate(words, (1.0, place), (10.0, 0.0), across, "offset points", **beside)
         axis.set_title("least model, contact law", x=1.12, loc="left")

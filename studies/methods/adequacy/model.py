@@ -6,7 +6,8 @@
 A residual mode replaces the modes left out (``ModalModel.with_residual_mode``).  Quantities and errors are
 as in ``studies.physics.least_model``, at one drive frequency each, with three differences:
 
-    delay            of the three collisions over v/a, the time in which the tip would turn by itself; absolute
+    delay            of the three collisions over v/a, the time in which the tip would turn by itself;
+                     absolute
     born_period      period of the settled orbit at excess 1e-3, at the drive frequency and at both ends of
                      what the error of the free period (letter, Fig. 2) makes of it; error: how many differ
     fold             by shooting

@@ -179,10 +179,8 @@ def met(times: Array, transit: float, lag: float) -> Array:
 def two_bars() -> list[Printed]:
     """The contact end of the first bar at the printed times, beside the exact wave."""
     (free, tip), (held, other) = series(MODES, False), series(MODES, True)
-    omega, phi = (
-        WAVE * np.append(free, held),
-        np.append(-tip, other) / ROOT_MASS,
-    )  # positive when they approach
+    omega = WAVE * np.append(free, held)
+    phi = np.append(-tip, other) / ROOT_MASS  # positive when they approach
     model = ModalModel(omega=omega, decay_rate=0.0 * omega, phi=phi, participation=0.0 * omega)
     bars = ImpactOscillator(model=model, stop=Stop(gap=0.0, law=LinearContact(stiffness=STIFFNESS)))
     start = State(displacement=0.0 * omega, velocity=-ROOT_MASS * (np.arange(omega.size) == 0))

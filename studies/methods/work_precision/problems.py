@@ -93,17 +93,11 @@ def linear_beam(scene: Scene) -> ImpactOscillator:
     def with_stiffness(stiffness: float) -> ImpactOscillator:
         return replace(hertz, stop=Stop(gap=hertz.stop.gap, law=LinearContact(stiffness=stiffness)))
 
+    def longer(stiffness: float) -> float:
+        return first_collision(with_stiffness(stiffness)).contact_time - wanted
+
     guess = (math.pi / wanted) ** 2 / float(hertz.model.phi @ hertz.model.phi)
-    return with_stiffness(
-        float(
-            brentq(
-                lambda k: first_collision(with_stiffness(k)).contact_time - wanted,
-                0.25 * guess,
-                4.0 * guess,
-                xtol=1e-13 * guess,
-            )
-        )
-    )
+    return with_stiffness(float(brentq(longer, 0.25 * guess, 4.0 * guess, xtol=1e-13 * guess)))
 
 
 def hertz_beam(scene: Scene) -> ImpactOscillator:
