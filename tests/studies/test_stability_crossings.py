@@ -77,9 +77,6 @@ def test_rows_of_methods_without_and_with_looks():
     assert half.refused is False and len(arrays) == 2
 
 
-# accumulation
-
-
 @pytest.mark.parametrize("e", [0.3, 0.7, 0.99])
 def test_the_ball_rests_when_theory_says_although_its_impacts_have_no_end(e):
     found, impacts = accumulation.time_of_rest(e)

@@ -1,4 +1,4 @@
-"""The tour runs from top to bottom, and what it prints is what the physics asks for."""
+"""The tour runs from top to bottom, and what it prints is what the physics requires."""
 
 import runpy
 from pathlib import Path

@@ -25,9 +25,6 @@ SCENE = read_scene("letter", [])
 FEW_MODES = SCENE.replace({"modes.count": 4})
 
 
-# -------------------------------------------------------------------------------------------- the reference
-
-
 def leaf(law: ContactLaw, excess: float = 0.013) -> contact.ImpactOscillator:
     """Three modes near those of the letter's spring."""
     omega, decay = 2 * np.pi * np.array([24.5, 152.0, 390.0]), [3.56, 21.0, 55.0]
@@ -68,9 +65,6 @@ def test_what_the_reference_cannot_follow_is_refused() -> None:
     touch = simulate(deep, start, periods=1).impacts
     with pytest.raises(ValueError, match="in a contact"):
         extended_motion(deep, start, 0.5 * (touch.start[0] + touch.end[0]))
-
-
-# ------------------------------------------------------------------------------------ rows and what they say
 
 
 def thrown() -> Reference:
