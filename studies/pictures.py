@@ -122,7 +122,7 @@ def draw_costs(drawn: Drawn) -> Figure:
             continue
         place = lines.index(name)
         axes.loglog([start, end], [1e-4, 1e-8], "o-", color=PALETTE[place], linewidth=2.0, markersize=5.0)
-        line = {"arrowstyle": "-", "linestyle": ":", "color": PALETTE[place], "relpos": (1.0, 0.5)}
+        line: Style = {"arrowstyle": "-", "linestyle": ":", "color": PALETTE[place], "relpos": (1.0, 0.5)}
         line |= {"shrinkA": 0.0}
         below = end, 1e-8 * 10.0 ** (-1.0 - 1.1 * place)  # the further right, the lower: no line meets a word
         look = {"ha": "right", "va": "center", "arrowprops": line, "color": PALETTE[place]}

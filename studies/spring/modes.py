@@ -94,8 +94,8 @@ def rows_of(scene: Scene, solved: Modes | None) -> list[NaturalMode]:
         rates = damping_of(scene).decay_rates(solved)
         columns = (solved.frequencies_hz, rates, solved.phi, solved.participation, solved.coupled)
     return [
-        NaturalMode(number, *map(float, row), coupled=bool(moves))
-        for number, (*row, moves) in enumerate(zip(*columns, strict=True), start=1)
+        NaturalMode(number, float(f), float(c), float(phi), float(gamma), bool(moves))
+        for number, (f, c, phi, gamma, moves) in enumerate(zip(*columns, strict=True), start=1)
     ]
 
 
