@@ -55,6 +55,7 @@ Strobed = StrobedMap[Any]
 Diagram = OrbitDiagram[Any]
 
 P = ParamSpec("P")
+S = TypeVar("S")
 T = TypeVar("T")
 
 
@@ -105,7 +106,7 @@ def up_and_down(strobed: Strobed, excesses: NDArray[np.float64], **settings: Any
     """
     settings = {"observe": partial(observe, strobed), **settings}
 
-    def scan(_way: str, values: NDArray[np.float64], state: Any) -> tuple[Diagram, Any]:
+    def scan(_way: str, values: NDArray[np.float64], state: object) -> tuple[Diagram, object]:
         found = orbit_diagram(strobed, values, state, **settings)
         return found, found.end
 
@@ -113,9 +114,9 @@ def up_and_down(strobed: Strobed, excesses: NDArray[np.float64], **settings: Any
 
 
 def both_ways(
-    strobed: Strobed,
+    strobed: StrobedMap[S],
     excesses: NDArray[np.float64],
-    scan: Callable[[str, NDArray[np.float64], Any], tuple[T, Any]],
+    scan: Callable[[str, NDArray[np.float64], S], tuple[T, S]],
 ) -> dict[str, T]:
     """The upward scan from the motion without impacts, and the downward scan from where that ends.
 

@@ -25,6 +25,8 @@ MOST_STEPS = 1_000_000
 
 FAR = 1e30  # end of a piece in sigma, never reached: an event ends it [s m^-1/2]
 
+Heyoka = Any  # an expression or integrator of heyoka, which has no types
+
 _kept = threading.local()
 
 
@@ -115,7 +117,7 @@ def heyoka_pieces(e: Equations) -> Advance:
 
     numbers = np.concatenate([e.modes.ravel(), e.scalars, [e.rounding, 0.0]])
 
-    def made(contact: bool) -> Any:
+    def made(contact: bool) -> Heyoka:
         kept = _kept.__dict__.setdefault("integrators", {})
         kind = (e.n, contact, contact and e.hertz, e.tolerance)
         if kind not in kept:
@@ -154,8 +156,8 @@ def heyoka_pieces(e: Equations) -> Advance:
 
 
 def heyoka_equations(
-    modes: list[Any], scalars: list[Any], contact: bool = False, sigma: bool = False
-) -> tuple[list[Any], Any]:
+    modes: list[Heyoka], scalars: list[Heyoka], contact: bool = False, sigma: bool = False
+) -> tuple[list[Heyoka], Heyoka]:
     """The equations of a flight, a linear contact, or a Hertz contact in sigma, and the penetration [m].
 
     `modes` and `scalars`, as in `rates` of ``piecewise``, are numbers, or parameters at run time.  The last
@@ -182,7 +184,7 @@ def heyoka_equations(
     return system, depth
 
 
-def _compiled(n: int, contact: bool, sigma: bool, tolerance: float) -> Any:
+def _compiled(n: int, contact: bool, sigma: bool, tolerance: float) -> Heyoka:
     """heyoka's integrator for a flight, a linear contact, or a Hertz contact in sigma."""
     import heyoka as hy
 

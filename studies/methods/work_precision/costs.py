@@ -12,14 +12,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from statistics import median
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 
 from contact import ImpactOscillator, StroboscopicMap, simulate
 from studies import letter
 from studies.methods.peers import OutsideSolver, missing_solvers
-from studies.methods.peers.adapters import heyoka_equations
+from studies.methods.peers.adapters import Heyoka, heyoka_equations
 from studies.methods.peers.piecewise import numbers_of
 from studies.methods.work_precision.model import Orbit, in_turns
 from studies.methods.work_precision.problems import EQ_1, HERTZ
@@ -61,7 +61,7 @@ def costs(scene: Scene, run: Run) -> list[Cost]:
     return [row for case, oscillator in tracked for row in rows_of(case, oscillator, quick=run.quick)]
 
 
-def heyoka_orbit(oscillator: ImpactOscillator) -> tuple[Orbit, Any]:
+def heyoka_orbit(oscillator: ImpactOscillator) -> tuple[Orbit, Heyoka]:
     """An orbit of Eq. (1) from rest by heyoka alone, the impact in the callback of an event, at its default
     tolerance (the rounding of a double); and its integrator."""
     import heyoka as hy
@@ -69,7 +69,7 @@ def heyoka_orbit(oscillator: ImpactOscillator) -> tuple[Orbit, Any]:
     modes, scalars = numbers_of(oscillator)
     system, depth = heyoka_equations(modes.tolist(), scalars.tolist())
 
-    def impact(taylor: Any, _sign: int) -> bool:
+    def impact(taylor: Heyoka, _sign: int) -> bool:
         taylor.state[1] *= -oscillator.stop.law.numbers[0]
         return True
 
