@@ -9,8 +9,6 @@ Run:     python -m studies explore [--scene FILE.toml] [--set key=value]     on 
 Writes:  nothing
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace

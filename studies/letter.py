@@ -6,26 +6,24 @@ from them, "rho = F/F_g - 1" under Fig. 4 is the excess, not the map's rho; the 
 may be either.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
-FREE_PERIOD_S, FREE_PERIOD_ERROR_S = 40.80e-3, 0.02e-3
-"""Fig. 2: period of the freely swinging beam [s]."""
+FREE_PERIOD_S, FREE_PERIOD_ERROR_S = 40.80e-3, 0.02e-3  # Fig. 2: period of the freely swinging beam [s]
 
 PERIODS = MappingProxyType({20.90: 3, 21.50: 4, 22.20: 5, 22.60: 6, 23.05: 8, 23.40: 10})
 """Fig. 2: drive frequency [Hz] -> m of the transition p1 <-> pm."""
 
-RESTITUTION = 0.1
-"""Text: "estimated to be tau ~ 0.1"."""
+TRANSITION_HZ = MappingProxyType({m: frequency for frequency, m in PERIODS.items()})
+"""The same the other way round: m -> drive frequency [Hz]."""
+
+RESTITUTION = 0.1  # text: "estimated to be tau ~ 0.1"
 
 DRIVE_AMPLITUDE_M, AMPLITUDE_STABILITY_M = 2e-3, 0.5e-6
 """Text: typical amplitude of the base and its long-term stability [m]."""
 
-AMPLITUDE_STABILITY = AMPLITUDE_STABILITY_M / DRIVE_AMPLITUDE_M
-"""The same as an excess [1]."""
+AMPLITUDE_STABILITY = AMPLITUDE_STABILITY_M / DRIVE_AMPLITUDE_M  # the same as an excess [1]
 
 TIME_TRACE_HZ, TIME_TRACE_EXCESS = 21.50, 0.013
 """Fig. 4: drive frequency [Hz] and excess of the period-4 time trace."""

@@ -9,8 +9,6 @@ Run:     python -m studies pictures [--out DIR]
 Writes:  p4.png, costs.png; by default in docs/pictures of the checkout
 """
 
-from __future__ import annotations
-
 import csv
 import io
 import json
@@ -36,8 +34,7 @@ from studies.shell.painter import draw_rig
 from studies.shell.plotting import BLUE, PALETTE, PURPLE, STYLE, VERMILION, Style
 from studies.shell.scene import beam_at, model_of, modes_of, read_scene
 
-Drawn = Mapping[str, Any]
-"""What a picture shows: names -> numbers, rows of numbers, or mappings of them."""
+Drawn = Mapping[str, Any]  # what a picture shows: names -> numbers, rows of numbers, or mappings of them
 
 SCENE = read_scene("letter", ["modes.count=12"])
 COSTS, PICTURES = ROOT / "docs" / "costs.csv", ROOT / "docs" / "pictures"
@@ -125,13 +122,8 @@ def draw_costs(drawn: Drawn) -> Figure:
             continue
         place = lines.index(name)
         axes.loglog([start, end], [1e-4, 1e-8], "o-", color=PALETTE[place], linewidth=2.0, markersize=5.0)
-        line = {
-            "arrowstyle": "-",
-            "linestyle": ":",
-            "color": PALETTE[place],
-            "relpos": (1.0, 0.5),
-            "shrinkA": 0.0,
-        }
+        line: Style = {"arrowstyle": "-", "linestyle": ":", "color": PALETTE[place], "relpos": (1.0, 0.5)}
+        line |= {"shrinkA": 0.0}
         below = end, 1e-8 * 10.0 ** (-1.0 - 1.1 * place)  # the further right, the lower: no line meets a word
         look = {"ha": "right", "va": "center", "arrowprops": line, "color": PALETTE[place]}
         axes.annotate(f"{name}{missed} ", (end, 1e-8), below, **look)

@@ -49,7 +49,7 @@ motion = simulate(beam, settled, periods=5, times=times)
 hit = collisions(motion)[0]
 print(f"effective restitution {hit.restitution:.2f}, delay {1e3 * hit.delay:.2f} ms, kick {hit.kick:.2f}")
 
-# %% How far below grazing the orbit lives on: followed to its fold
+# %% How far below grazing the orbit remains: followed to its fold
 from contact.orbits import Shooting, fold_of
 
 fold = fold_of(Shooting(oscillator=beam, period=4))

@@ -1,1 +1,18 @@
-"""The experiment: its figures, its claims, and what lies behind them."""
+"""The experiment: its figures, its claims, and what lies behind them.
+
+The figures of the letter
+    `transitions`       Fig. 2: which period begins at grazing, and where does its orbit end?
+    `hysteresis`        Fig. 3: how far below grazing do the orbits remain, and why do the models differ?
+    `time_trace`        Fig. 4: what does a settled orbit look like, in time, as a spectrum, as a film?
+    `breakdown`         Fig. 5: where does the square-root map fail?
+
+Behind the figures
+    `effective_impact`  what does one collision do to mode 1: restitution, delay, kick?
+    `soft_wall`         how does a wall of finite hardness change the motion next to grazing?
+    `claims`            do loss, secondary bifurcations, universality and period adding hold?
+    `last_period`       why was p10 the last period that the letter saw?
+    `chart`             which period and how many impacts, over the whole plane of frequency and amplitude?
+
+In each folder `__main__` has the claim, the options and the verdicts, `model` the physics, and `figure` the
+figures.  A folder with further files names them in its ``__init__``.
+"""

@@ -1,6 +1,6 @@
 r"""Crossings of the stop of known depth, at any phase of the looks that a method takes.
 
-Undamped modes swing freely and are all at their peak at t = 0, where the tip is at gap (1 + delta):
+Undamped modes move freely and are all at their peak at t = 0, where the tip is at gap (1 + delta):
 
     x(t) = gap (1 + delta) sum_k b_k cos(omega_k t),   sum b_k = 1,   a = sum b_k omega_k^2 gap
 
@@ -25,7 +25,7 @@ GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Swing:
+class Crossing:
     """Free modes that peak together before a stop.
 
     The peak lies `lead` to `lead + spread` after a run starts, `tail` before it ends [s]; the others are in
@@ -33,26 +33,25 @@ class Swing:
     """
 
     oscillator: ImpactOscillator
-    height: np.ndarray
-    """b_k [1]."""
+    height: np.ndarray  # b_k [1]
     lead: float
     spread: float
     tail: float
 
     @staticmethod
-    def of(model: ModalModel, stop: Stop, ringing: float) -> Swing:
+    def of(model: ModalModel, stop: Stop, ringing: float) -> Crossing:
         """All modes of the model, without their damping; those above the first make up the part `ringing` of
         the peak [1]."""
         n, period = model.omega.size, 2.0 * math.pi / float(model.omega[0])
         lead, spread, tail = (0.6, 0.25, 0.4) if n == 1 else (0.05, 0.02, 0.02)
         height = np.ones(1) if n == 1 else np.array([1.0 - ringing, *[ringing / (n - 1)] * (n - 1)])
         free = ImpactOscillator(model=replace(model, decay_rate=0.0 * model.decay_rate), stop=stop)
-        return Swing(
+        return Crossing(
             oscillator=free, height=height, lead=lead * period, spread=spread * period, tail=tail * period
         )
 
     @property
-    def pace(self) -> float:
+    def rate(self) -> float:
         """sqrt(a/gap) [1/s]."""
         return math.sqrt(float(self.height @ self.oscillator.model.omega**2))
 

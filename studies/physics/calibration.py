@@ -30,6 +30,7 @@ import math
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from scipy.optimize import brentq
@@ -49,8 +50,7 @@ ACCURACY = 1e-10
 KEY_TOLERANCE = 1e-13
 """Relative tolerance of Brent's method on the key; quantities vary with a low power of it."""
 
-BEYOND = 1e9
-"""Stands for an infinite deviation: the search needs its sign only."""
+BEYOND = 1e9  # replaces an infinite deviation: the search needs its sign only
 
 THINNEST, LOSS_FACTORS, MASSES = 0.02, (1e-9, 5.0), (0.3, 3.0)
 """Where is looked: thickness of the sheet over the present one, from; loss factor of the tape; mass of the
@@ -124,24 +124,17 @@ def strip_decay_rate(scene: Scene) -> float:
     return float(modes.omega[-1] * np.sum([stretching, bending] * energies) / np.sum(energies))
 
 
-def calibrate_thickness(scene: Scene, free_period_s: float) -> Scene:
-    """The scene with the sheet so thick that mode 1, damped, has this period [s]."""
-    return solve_for(
-        "spring.thickness_m",
-        scene,
-        free_period,
-        free_period_s,
-        name="free period",
-        unit="s",
-        between=thicknesses(scene),
-    )
+def calibrate_thickness(
+    scene: Scene, free_period_s: float, period_of: Callable[[Scene], float] = free_period
+) -> Scene:
+    """The scene with the sheet so thick that mode 1, damped, has this period [s], by `period_of` a scene.
 
-
-def thicknesses(scene: Scene) -> tuple[float, float]:
-    """Where the thickness of the sheet is looked for [m]: up to its width, and to what the bend allows."""
-    keys = scene.spring
+    The sheet is looked for up to the width of the spring, and to the thickness that the bend allows.
+    """
+    keys, search = scene.spring, partial(solve_for, "spring.thickness_m", name="free period", unit="s")
     thickest = min(keys.width_m, 1.999 * keys.bend_radius_m) if keys.kind == "folded_u" else keys.width_m
-    return min(keys.thickness_m, thickest) * THINNEST, thickest
+    between = min(keys.thickness_m, thickest) * THINNEST, thickest
+    return search(scene, period_of, free_period_s, between=between)
 
 
 def calibrate_damping(scene: Scene, decay_rate_per_s: float) -> Scene:
@@ -196,10 +189,10 @@ class Targets:
 
     free_period_s: float
     decay_rate_per_s: float
-    grazing_amplitude_m: float = 2e-3
+    grazing_amplitude_m: float = letter.DRIVE_AMPLITUDE_M
     kick: float = 1.0
-    frequency_hz: float = 22.2
-    excess: float = 0.013
+    frequency_hz: float = letter.TRANSITION_HZ[5]
+    excess: float = letter.TIME_TRACE_EXCESS
 
     @classmethod
     def of(cls, scene: Scene) -> Targets:
@@ -208,7 +201,6 @@ class Targets:
         return cls(
             free_period_s=keys.free_period_s,
             decay_rate_per_s=keys.decay_rate_per_s,
-            grazing_amplitude_m=letter.DRIVE_AMPLITUDE_M,
             frequency_hz=middle_of(scene),
         )
 
@@ -273,15 +265,8 @@ def with_mass_ratio(scene: Scene, ratio: float, frequency: float) -> Scene:
     def weighted(trial: Scene) -> Scene:
         return trial.replace({"tip.mass_kg": ratio * leaf_mass(trial)}, provenance=CALIBRATED)
 
-    fitted = solve_for(
-        "spring.thickness_m",
-        scene,
-        lambda trial: free_period(weighted(trial)),
-        scene.single_mode.free_period_s,
-        name="free period",
-        unit="s",
-        between=thicknesses(scene),
-    )
+    period = scene.single_mode.free_period_s
+    fitted = calibrate_thickness(scene, period, lambda trial: free_period(weighted(trial)))
     return calibrate_gap(weighted(fitted), letter.DRIVE_AMPLITUDE_M, frequency)
 
 

@@ -14,8 +14,6 @@ The folds come by closed form (map, Eq. (1)), from what each collision of the be
 parameters) or to all modes (kicks), and by shooting (beam).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -25,7 +23,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beam import InvalidValue, ModalModel, Refusal
-from contact import ContactError, StrobedMap, StroboscopicMap
+from contact import (
+    ContactError,
+    ImpactOscillator,
+    MaximalFamily,
+    SingleImpactOrbit,
+    StrobedMap,
+    StroboscopicMap,
+)
 from contact.orbits import (
     KickFamily,
     OrbitDiagram,
@@ -42,16 +47,15 @@ from studies.shell.scene import READOUT, Scene, beam_at, nordmark_at, single_mod
 TITLES = {"map": "Nordmark map", "single_mode": "Eq. (1)", "two_parameters": "two parameters", "beam": "beam"}
 """The descriptions with a strobed map, from the shortest to the fullest, and how figures name them."""
 
-BELOW = -1e-3
-"""Excess of the motion without impacts from which a motion above grazing starts [1]."""
+BELOW = -1e-3  # excess of the motion without impacts from which a motion above grazing starts [1]
 
-ROUNDING = 1e-12
-"""Change of an excess that is rounding [1]."""
+ROUNDING = 1e-12  # change of an excess that is rounding [1]
 
 Strobed = StrobedMap[Any]
 Diagram = OrbitDiagram[Any]
 
 P = ParamSpec("P")
+S = TypeVar("S")
 T = TypeVar("T")
 
 
@@ -79,6 +83,11 @@ def fold_at(
     return fold_of_kicks(KickFamily(oscillator=beam, period=period)) if period > 1 else None
 
 
+def fold_orbit(oscillator: ImpactOscillator, period: int) -> SingleImpactOrbit | None:
+    """The orbit p_m, m = `period`, at its fold under Newton's law, in closed form; None if there is none."""
+    return MaximalFamily.from_oscillator(oscillator, period=period).fold()
+
+
 def kick_fold(strobed: StroboscopicMap, period: int) -> float | None:
     """The fold of p_m by the kick that a collision gives all modes, without simulation of the orbit."""
     found = KickFamily(oscillator=strobed.oscillator, period=period).fold() if period > 1 else None
@@ -91,14 +100,32 @@ def observe(strobed: Strobed, points: NDArray[np.float64]) -> NDArray[np.float64
 
 
 def up_and_down(strobed: Strobed, excesses: NDArray[np.float64], **settings: Any) -> dict[str, Diagram]:
-    """The upward scan from the motion without impacts, and the downward scan from where that ends.
+    """The orbit diagrams of `both_ways`.
 
     `settings` are options of `contact.orbits.orbit_diagram`; by default it observes as `observe` does.
     """
     settings = {"observe": partial(observe, strobed), **settings}
-    quiet = strobed.at(float(excesses[0]) if excesses[0] < 0.0 else BELOW).steady()
-    up = orbit_diagram(strobed, excesses, quiet, **settings)
-    return {"up": up, "down": orbit_diagram(strobed, excesses[::-1], up.end, **settings)}
+
+    def scan(_way: str, values: NDArray[np.float64], state: object) -> tuple[Diagram, object]:
+        found = orbit_diagram(strobed, values, state, **settings)
+        return found, found.end
+
+    return both_ways(strobed, excesses, scan)
+
+
+def both_ways(
+    strobed: StrobedMap[S],
+    excesses: NDArray[np.float64],
+    scan: Callable[[str, NDArray[np.float64], S], tuple[T, S]],
+) -> dict[str, T]:
+    """The upward scan from the motion without impacts, and the downward scan from where that ends.
+
+    `scan(way, excesses, state)`, `way` "up" or "down", returns what it found and the state at its end.
+    """
+    state, found = strobed.at(float(excesses[0]) if excesses[0] < 0.0 else BELOW).steady(), dict[str, T]()
+    for way, values in (("up", excesses), ("down", excesses[::-1])):
+        found[way], state = scan(way, values, state)
+    return found
 
 
 @dataclass(frozen=True)

@@ -17,8 +17,7 @@ from studies.shell.options import Within
 SMALL, TIMES = Within(0, 0.02, open=True), Within(0, 1e9, "s")
 """Of noise and of the step of a scan; of the correlation time of a drift."""
 
-DRIFTS = (0.0, 100.0, 3600.0)
-"""Correlation times that are looked at [s], 0 for white noise."""
+DRIFTS = (0.0, 100.0, 3600.0)  # correlation times that are looked at [s], 0 for white noise
 
 QUIET = 64
 """Drive periods without impact beyond which the motion counts as p_1: longer than any period that counts."""

@@ -3,7 +3,7 @@
     scene, sentence = least_modes(scene, {"fold": 0.07})
 
 The reference is the spring with `REFERENCE` coupled modes, solved once; fewer modes are its truncations.
-From the bottom of `LADDER` upwards the first truncation is taken whose answers differ from those of the
+From the bottom of `LADDER` upwards the first truncation is taken whose answers differ from the answers of the
 reference by no more than the tolerances:
 
     frequency K    K-th frequency of the modes that move the ball: K modes have it
@@ -21,17 +21,15 @@ reference by no more than the tolerances:
 
 The command gives drive frequencies, excess and law; the excess is 0.013 where it gives none.
 
-Folds are those of the collision as a kick of all modes (``contact.orbits.KickFamily``), which has them to
+Folds come from the collision as a kick of all modes (``contact.orbits.KickFamily``), which has them to
 0.2 % (median; 1 % at worst) at a hundredth of the price of following the orbits. Modes left out act on a
 collision through their compliance, sum phi_k^2/omega_k^2 over the modes beyond, so that errors fall steadily
-along the ladder: the least number is found by bisection, and the next one is asked as well, lest errors
+along the ladder: the least number is found by bisection, and the next one is tried as well, lest errors
 cancel by chance. Where the reference lacks a quantity (no orbit, no fold), the quantities of `ALWAYS` are
 compared there. Where it lacks a first collision too, all its modes are kept. The modes kept always reach
 above the fastest drive. `studies.methods.adequacy` holds this choice against a search that follows every
 orbit.
 """
-
-from __future__ import annotations
 
 import math
 from bisect import bisect
@@ -52,41 +50,39 @@ from studies.shell.scene import Scene, SceneError, beam_at, model_of, periods_of
 REFERENCE = 40
 """Coupled modes of the reference: for the letter's spring 30 have its folds to 2e-4, 60 to 1e-4."""
 
-LADDER = (1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 15, 18, 21, 25, 30)
-"""Numbers of modes that are tried."""
+LADDER = (1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 15, 18, 21, 25, 30)  # numbers of modes that are tried
 
 TRACE_EXCESS, BORN = letter.TIME_TRACE_EXCESS, 1e-3
 COLLISIONS = (0.5 * TRACE_EXCESS, TRACE_EXCESS, 2.0 * TRACE_EXCESS)
-"""Excesses of the collisions that are asked for: three, lest errors that cancel at one pass for accuracy."""
+"""Excesses of the collisions that are compared: three, lest errors that cancel at one pass for accuracy."""
 
 ALWAYS = {"response": 1e-3, "kick": 0.005, "restitution": 0.01}
 """Quantities, with tolerances, that take the place of one that the reference lacks."""
 
-SAMPLES = 256
-"""Samples of a trace in a drive period."""
+SAMPLES = 256  # samples of a trace in a drive period
 
 Values = NDArray[np.float64]
 Answer = Values | None
-At = Callable[[float], ImpactOscillator]
-"""The oscillator of a model at a drive frequency [Hz]."""
+At = Callable[[float], ImpactOscillator]  # the oscillator of a model at a drive frequency [Hz]
 Distance = Callable[[Values, Values], float]
-Ask = Callable[..., Answer]
-"""The answer of a model at a drive frequency [Hz] and, if given, an excess [1]."""
+AnswerOf = Callable[
+    ..., Answer
+]  # the answer of a model at a drive frequency [Hz] and, if given, an excess [1]
 Fold = Callable[[StroboscopicMap, int], float | None]
 Off = Callable[[int], float]
 Choice = TypeVar("Choice", bound=Hashable)
 
 
-def distances(ask: Callable[[Choice], Answer], distance: Distance) -> Callable[[Choice, Choice], float]:
+def distances(answer_of: Callable[[Choice], Answer], distance: Distance) -> Callable[[Choice, Choice], float]:
     """How far, from the answer of a reference, that of a model is, here of numbers of modes.
 
-    Infinite where one has no answer: `ask`, called once for each, gives None or raises ContactError or
+    Infinite where one has no answer: `answer_of`, called once for each, gives None or raises ContactError or
     ValueError.
     """
 
     @cache
     def answer(choice: Choice) -> Answer:
-        return or_none(ask, choice)  # None for a drive above all modes, too
+        return or_none(answer_of, choice)  # None for a drive above all modes, too
 
     def off(reference: Choice, choice: Choice) -> float:
         sharp, found = answer(reference), answer(choice)
@@ -111,7 +107,7 @@ def reference_of(scene: Scene) -> ModalModel:
 
 
 def middle_of(scene: Scene) -> float:
-    """The drive frequency [Hz] in the middle of those of the scene."""
+    """The drive frequency [Hz] in the middle of the drives of the scene."""
     drives = sorted(scene.drive.frequencies_hz)
     return drives[(len(drives) - 1) // 2]
 
@@ -180,7 +176,7 @@ def largest_error(answer: Values, reference: Values) -> float:
     return float(np.max(np.abs(answer - reference)))
 
 
-QUANTITIES: Mapping[str, tuple[Ask, Distance, bool, bool]] = {
+QUANTITIES: Mapping[str, tuple[AnswerOf, Distance, bool, bool]] = {
     "response": (
         lambda at, f, _=0.0: np.array([at(f).grazing_amplitude()]),
         lambda answer, reference: largest_error(answer / reference, reference / reference),
@@ -217,11 +213,11 @@ def questions(
     lacking = dict[float, tuple[str, str]]()
 
     def off_of(quantity: str, frequency: float) -> Off:
-        ask, distance, _, born = QUANTITIES[quantity]
+        answer_of, distance, _, born = QUANTITIES[quantity]
 
         def answer(modes: int) -> Answer:
             there = scene.scan.born_excess if born else excess
-            return ask(lambda f: beam_at(scene, f, whole.truncated(modes)), frequency, there)
+            return answer_of(lambda f: beam_at(scene, f, whole.truncated(modes)), frequency, there)
 
         return partial(distances(answer, distance), whole.n_modes)
 
@@ -271,13 +267,13 @@ def least_modes(
     reason = f"frequency {least}" if numbers else "the least there is"
     if others:
         drives = frequencies or scene.drive.frequencies_hz
-        asked = scene.replace({"drive.frequencies_hz": tuple(drives)})
-        whole = reference_of(asked)
+        there = scene.replace({"drive.frequencies_hz": tuple(drives)})
+        whole = reference_of(there)
         sharp, fastest = whole.n_modes, max(*drives, *scene.drive.frequencies_hz)
         least = max(least, int(np.searchsorted(whole.frequencies_hz, fastest)) + 1)
         rungs = sorted({*(n for n in LADDER if least < n < sharp), min(least, sharp), sharp})
         low, worst, lacking = 0, None, dict[str, dict[str, None]]()
-        for question in questions(asked, others, whole, excess):
+        for question in questions(there, others, whole, excess):
             lacking.setdefault(question.lacking[0], {})[question.lacking[1]] = None
 
             def enough(place: int, question: Question = question) -> bool:

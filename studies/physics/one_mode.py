@@ -4,8 +4,6 @@ Period and decay rate that a scene leaves open come from mode 1 (``studies.shell
 that it leaves open is that of a first collision of the beam.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 
@@ -14,8 +12,7 @@ from studies.physics.descriptions import or_none
 from studies.physics.least_model import TRACE_EXCESS, middle_of
 from studies.shell.scene import OPEN, SAME_SPRING, Scene, beam_at, beyond_linear, first_mode
 
-SAME_DECAY = 0.05
-"""Relative difference of two decay rates beyond which the second digit of a fold changes."""
+SAME_DECAY = 0.05  # relative difference of two decay rates beyond which the second digit of a fold changes
 
 
 def with_restitution(scene: Scene) -> tuple[Scene, str]:

@@ -1,4 +1,4 @@
-"""The parameters that a record may tell of an impact oscillator: values, derivatives, and other values.
+"""The parameters that a record may determine of an impact oscillator: values, derivatives, and other values.
 
 free_period T, decay_rate c     of mode 1: omega_1^2 = (2 pi/T)^2 + (c/2)^2; the other frequencies keep
                                 their ratio to omega_1, the other decay rates theirs to c
@@ -8,8 +8,6 @@ restitution, delay, stiffness, damping, dissipation     the plain numbers of the
 frequency, amplitude            of the base motion; with one mode Z is that of Eq. (1), Gamma phi Z of a
                                 spring, so that it is fitted where the record is not that of one mode
 """
-
-from __future__ import annotations
 
 import math
 import warnings
@@ -82,9 +80,9 @@ def parameters_of(oscillator: ImpactOscillator) -> dict[str, Parameter]:
         "amplitude": (drive.amplitude, "m"),
         **{name: (getattr(law, field), unit) for name, (field, unit) in numbers_of(law).items()},
     }
-    pace = {"s": period, "1/s": 1.0 / period}
+    scale = {"s": period, "1/s": 1.0 / period}
     return {
-        name: Parameter(value=v, size=max(abs(v), LEAST.get(name, 0.0) * pace.get(unit, 1.0)), unit=unit)
+        name: Parameter(value=v, size=max(abs(v), LEAST.get(name, 0.0) * scale.get(unit, 1.0)), unit=unit)
         for name, (v, unit) in known.items()
     }
 
@@ -145,9 +143,9 @@ def _with_values(oscillator: ImpactOscillator, values: Mapping[str, float]) -> I
         rate, period = values.get("decay_rate", before), values.get("free_period", model.free_period)
         if not (period > 0.0 and rate >= 0.0):
             raise InvalidValue(f"free_period is {period:g} s, decay_rate {rate:g} 1/s; both must be positive")
-        pace = math.hypot(2.0 * math.pi / period, 0.5 * rate) / float(model.omega[k])
+        faster = math.hypot(2.0 * math.pi / period, 0.5 * rate) / float(model.omega[k])
         rates = model.decay_rate * (rate / before) if before > 0.0 else model.decay_rate + rate
-        model = replace(model, omega=model.omega * pace, decay_rate=rates)
+        model = replace(model, omega=model.omega * faster, decay_rate=rates)
     own: dict[str, Any] = {
         field: values[name] for name, (field, _) in numbers_of(law).items() if name in values
     }

@@ -4,7 +4,7 @@
                                        the approach speed of mode 1 (`contact.first_collision`)
 
 at excesses from 1e-6 to 0.3, between which tau and d/v are interpolated in ln v. They make the rebound law of
-Eq. (1) (`contact.DelayedRestitution`), so that energy loss and time delay stand for the higher modes, as the
+Eq. (1) (`contact.DelayedRestitution`), so that energy loss and time delay replace the higher modes, as the
 letter claims; what they leave out is the ringing that the next collision meets.
 
 Below the slowest collision tau and d/v keep their values. There d < 2 v/a, a the deceleration of the tip, so
@@ -18,8 +18,6 @@ on an orbit the tip decelerates otherwise by the part that its free motion has o
 the former the orbits end within 0.5 % of where they end by the kicks (6 % of 4.7e-7 at 22.60 Hz).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Annotated
@@ -32,14 +30,11 @@ from contact import ContactError, DelayedRestitution, ImpactOscillator, State, f
 from contact.orbits import Kick, KickFamily, Shooting, born_period, fold_excess
 from studies.shell.scene import Scene, SceneError, beam_at, nordmark_at, single_mode_at
 
-EXCESSES = np.geomspace(1e-6, 0.3, 45)
-"""Of the first collisions."""
+EXCESSES = np.geomspace(1e-6, 0.3, 45)  # of the first collisions
 
-SHORTEST = 1e-12
-"""Delay over the drive period below which it is rounding."""
+SHORTEST = 1e-12  # delay over the drive period below which it is rounding
 
-FEWEST = 8
-"""Collisions with a restitution that make a law."""
+FEWEST = 8  # collisions with a restitution that make a law
 
 
 def law_of(oscillator: ImpactOscillator) -> DelayedRestitution:

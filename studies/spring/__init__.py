@@ -1,1 +1,9 @@
-"""The spring: its modes, its calibration, its shape."""
+"""The spring: its modes, its calibration, its shape.
+
+`modes`       which modes does the spring have?  Table, shapes, a film of each mode, files for ParaView
+`calibrate`   which thickness, tape, gap and ball give the four numbers that were measured?
+`shape`       which springs do the words "U shaped" allow, and what do they change?
+
+A study of one file holds claim, physics and figure.  A folder has them in `__main__`, `model` and `figure`,
+and names its further files in its ``__init__``.
+"""

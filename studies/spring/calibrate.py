@@ -9,8 +9,6 @@ Run:     python -m studies calibrate
 Writes:  keys.csv (before and after), calibrated.toml, a scene that every study takes with --scene
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated
@@ -22,8 +20,7 @@ from studies.shell.study import Run, study
 
 KEYS = ("spring.thickness_m", "spring.tape_loss_factor", "stop.gap_m", "tip.mass_kg")
 
-SMALL = 1e-3
-"""Relative change of a key by the fit that is none."""
+SMALL = 1e-3  # relative change of a key by the fit that is none
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -36,14 +36,13 @@ from studies.shell.study import Run, study
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-FILMED, DRAWN = 6, 8
-"""Modes with a film, and in the figure; lowest first."""
+FILMED, DRAWN = 6, 8  # modes with a film, and in the figure; lowest first
 
 LARGEST = 0.05
 """Largest displacement of a drawn shape over the greatest extent of the strip; legs do not cross yet."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class NaturalMode:
     """One mode."""
 
@@ -95,14 +94,7 @@ def rows_of(scene: Scene, solved: Modes | None) -> list[NaturalMode]:
         rates = damping_of(scene).decay_rates(solved)
         columns = (solved.frequencies_hz, rates, solved.phi, solved.participation, solved.coupled)
     return [
-        NaturalMode(
-            mode=number,
-            frequency_hz=float(f),
-            decay_rate_per_s=float(c),
-            tip_value=float(phi),
-            participation=float(gamma),
-            coupled=bool(moves),
-        )
+        NaturalMode(number, float(f), float(c), float(phi), float(gamma), bool(moves))
         for number, (f, c, phi, gamma, moves) in enumerate(zip(*columns, strict=True), start=1)
     ]
 
@@ -159,16 +151,16 @@ def write_films(run: Run, solved: Modes, radius: float, count: int, frames: int)
         shape = scenery.mesh.normalised(largest)[number]
         phases = 2.0 * math.pi * np.arange(frames) / frames
         name = f"mode {number + 1}: {solved.frequencies_hz[number]:.1f} Hz"
-        swings = [math.cos(phase) * shape for phase in phases]
-        moments = [Moment(points=points, base=np.zeros(3), lines=[name]) for points in swings]
+        displaced = [math.cos(phase) * shape for phase in phases]
+        moments = [Moment(points=points, base=np.zeros(3), lines=[name]) for points in displaced]
         write_film(run, f"mode_{number + 1}", f"One period of {name}, enlarged.", stage, moments)
 
 
 def judge(scene: Scene, run: Run) -> None:
     """Verdict on the free period: the thickness was fitted to it."""
-    period, told = free_period(scene), scene.provenance()["spring.thickness_m"]
+    period, origin = free_period(scene), scene.provenance()["spring.thickness_m"]
     same = abs(period - letter.FREE_PERIOD_S) <= letter.FREE_PERIOD_ERROR_S
-    verdict = "fitted" if same and told == "calibrated" else "agrees" if same else "differs"
+    verdict = "fitted" if same and origin == "calibrated" else "agrees" if same else "differs"
     run.verdict("free_period", verdict, found=f"{1e3 * period:.2f} ms")  # type: ignore[arg-type]
 
 
@@ -179,8 +171,8 @@ def draw(solved: Modes) -> Figure:
     along = solved.displacement_along(2)
     points, count = 1e3 * along.points, min(DRAWN, solved.omega.size)
     ball = int(np.argmin(np.abs(along.s - solved.discretization.spring.tip_at)))
-    swing, columns = 1e3 * largest_of(solved), min(2, count)
-    rows, extent = math.ceil(count / columns), np.ptp(points, axis=0) + 3.0 * swing
+    largest, columns = 1e3 * largest_of(solved), min(2, count)
+    rows, extent = math.ceil(count / columns), np.ptp(points, axis=0) + 3.0 * largest
     height = 0.022 + rows * (0.007 + extent[1] / extent[0] * (plotting.PAGE - 0.014) / columns)
     shared = {"sharex": True, "sharey": True, "squeeze": False}
     figure, axes = plotting.new_figure(rows, columns, width=plotting.PAGE, height=height, **shared)
@@ -188,7 +180,7 @@ def draw(solved: Modes) -> Figure:
         axis.set_visible(False)
     for number, axis in enumerate(axes.flat[:count]):
         shape = along.displacement[number]
-        step = shape * (swing / np.linalg.norm(shape, axis=1).max())
+        step = shape * (largest / np.linalg.norm(shape, axis=1).max())
         axis.plot(points[:, 0], points[:, 1], color="0.75", linewidth=0.8, label="at rest")
         colour = plotting.BLUE if solved.coupled[number] else plotting.VERMILION
         words = "mode that impacts excite" if solved.coupled[number] else "mode that impacts do not excite"
@@ -203,5 +195,7 @@ def draw(solved: Modes) -> Figure:
     for axis in axes.flat[:count][-columns:]:
         plotting.label(axis.xaxis, "x", "mm")
         axis.tick_params(labelbottom=True)
-    plotting.legend_below(figure, axes.flat[:count], 2, title=f"largest displacement drawn as {swing:.1f} mm")
+    plotting.legend_below(
+        figure, axes.flat[:count], 2, title=f"largest displacement drawn as {largest:.1f} mm"
+    )
     return figure

@@ -1,7 +1,5 @@
 """Enough model and not more: against a larger reference, one step less, and the quick estimate of studies."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import asdict, replace
 from functools import cache
@@ -11,8 +9,7 @@ import pytest
 from oscillators import slow
 
 from studies.methods.adequacy.__main__ import questions, sentences
-from studies.methods.adequacy.models import Choice, Models
-from studies.methods.adequacy.search import QUANTITIES, LeastModel, Search, first
+from studies.methods.adequacy.model import QUANTITIES, Choice, LeastModel, Models, Search, first
 from studies.physics.least_model import least_modes
 from studies.shell.scene import read_scene
 
@@ -86,16 +83,11 @@ def test_a_soft_contact_leaves_the_higher_modes_alone_a_stiff_one_does_not():
 
 
 @pytest.mark.slow
-def test_born_period_needs_one_mode_where_the_letter_agrees():
+@pytest.mark.parametrize(("frequency", "least"), [(21.5, ("Eq. (1)", 1, False)), (23.4, ("beam", 1, True))])
+def test_born_period_needs_one_mode_where_the_letter_agrees_and_a_residual_one_elsewhere(frequency, least):
     """An integer is right or wrong: equal at the drive frequency and at both ends of the error of T."""
-    row = search_of("born_period", 21.5).least(0.0)
-    assert row.reached and row.error == 0.0 and row.level == "Eq. (1)"
-
-
-@pytest.mark.slow
-def test_born_period_needs_a_residual_mode_where_the_letter_disagrees():
-    row = search_of("born_period", 23.4).least(0.0)
-    assert row.reached and (row.level, row.modes, row.residual) == ("beam", 1, True)
+    row = search_of("born_period", frequency).least(0.0)
+    assert row.reached and row.error == 0.0 and (row.level, row.modes, row.residual) == least
 
 
 @pytest.mark.parametrize(

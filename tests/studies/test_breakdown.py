@@ -1,7 +1,5 @@
 """The letter's Fig. 5: where the state born at grazing is not p3, and p3 is the end of the downward scan."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Springs from scenes, and the keys that are fitted to measured numbers."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -37,7 +35,7 @@ def test_the_model_has_the_period_and_the_decay_that_were_measured():
     assert abs(model.decay_rate[0] / 4.0 - 1.0) <= ACCURACY
     assert abs(calibration.strip_decay_rate(scene) / 4.0 - 1.0) <= ACCURACY
     undamped = abs(2.0 * math.pi / model.omega[0] / 41.2e-3 - 1.0)
-    assert undamped > 100.0 * ACCURACY  # the damped and the undamped period are told apart
+    assert undamped > 100.0 * ACCURACY  # the damped and the undamped period are distinguished
 
 
 def test_without_scaling_the_modes_decay_as_the_strain_energies_say():
@@ -131,7 +129,7 @@ def test_every_kind_of_spring_makes_a_model_with_a_readout():
     assert single.points[READOUT].row.tolist() == [1.0] == single.phi.tolist()
 
 
-def test_the_readout_sees_the_ball_where_the_ball_is_and_rotation_where_it_is_asked_for():
+def test_the_readout_sees_the_ball_where_the_ball_is_and_rotation_where_it_is_wanted():
     for scene, place in ((LETTER, 1.0), (FOLDED, 0.5)):
         at_ball = model_of(scene.replace({**COARSE, "readout.arc_fraction": place}))
         np.testing.assert_allclose(at_ball.points[READOUT].row, at_ball.phi, rtol=1e-9)

@@ -1,7 +1,5 @@
 """What a motion settles on by its largest Lyapunov exponent, and basins."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -16,25 +14,25 @@ FREQUENCY = 21.50
 FEW = np.array([-0.02, -0.012, -0.004, 0.004, 0.012])
 
 
-def told(strobed, *, most_cycles=1500, cycles=400):
+def kind_reached(strobed, *, most_cycles=1500, cycles=400):
     """Kind and largest exponent of what the motion without impacts turns into."""
     settled = settle(strobed, strobed.steady(), most_cycles=most_cycles)
     kind, exponents = kind_of(strobed, settled, cycles)
     return kind, exponents.largest
 
 
-def test_chaos_slow_transient_and_motion_without_impacts_are_told_apart(letter_scene):
+def test_chaos_slow_transient_and_motion_without_impacts_are_distinguished(letter_scene):
     twelve = letter_scene.replace({"modes.count": 12})
     both = single_mode_at(letter_scene, FREQUENCY), beam_at(twelve, FREQUENCY)
     single, beam = (StroboscopicMap(oscillator=oscillator) for oscillator in both)
-    assert told(single.at(0.034), cycles=500)[0] == CHAOTIC
+    assert kind_reached(single.at(0.034), cycles=500)[0] == CHAOTIC
     for strobed in (single, beam):
-        kind, exponent = told(strobed.at(-0.02))
+        kind, exponent = kind_reached(strobed.at(-0.02))
         rate = float(strobed.oscillator.model.decay_rate[0])
         assert kind == WITHOUT and exponent * FREQUENCY == pytest.approx(-0.5 * rate, rel=1e-9)
-    kind, exponent = told(beam.at(0.045))
+    kind, exponent = kind_reached(beam.at(0.045))
     assert kind == CHAOTIC and exponent > 0.05
-    kind, exponent = told(beam.at(0.01), cycles=100, most_cycles=128)
+    kind, exponent = kind_reached(beam.at(0.01), cycles=100, most_cycles=128)
     assert kind in (PERIODIC, NOT_SETTLED) and exponent < 0.0
 
 

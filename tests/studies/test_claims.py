@@ -1,7 +1,5 @@
 """The letter's other claims: closed forms against simulation and shooting."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """The descriptions by name, each held to another route to the same orbit."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,8 +1,6 @@
 """One approach to the plate: limits of restitution, delay and kick, closed relations, what is read off the
 curves, and the study."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
@@ -39,9 +37,6 @@ def bare() -> Spring:
 def met(spring: Spring, law, excess: float = TIME_TRACE_EXCESS) -> Approach:
     """The row of one approach."""
     return spring.case("speed", "a", law, excess=excess).measured()
-
-
-# the physics of one collision
 
 
 @pytest.mark.parametrize("modes", [2, 5, 10])
@@ -95,9 +90,6 @@ def test_other_tip_masses_keep_the_drive_amplitude_and_are_in_hertz_contact_only
     assert {case.row.curve for case in cases_of(newton, [heavy], own)} == {"speed", "reference"}
 
 
-# what is read off the curves, with rows made for it
-
-
 def test_the_smallest_restitution_lies_between_the_cases():
     row = Approach(curve="search", series="1", value=0.0, excess=0.01, mass_ratio=0.3, impacts=1)
     rows = []
@@ -109,9 +101,6 @@ def test_the_smallest_restitution_lies_between_the_cases():
     assert found.mass_ratio == pytest.approx(0.25, rel=0.01)
     falling = [replace(row, kick=0.5, restitution=1.0 - 0.5 * row.mass_ratio) for row in rows]
     assert floor_of([]) is floor_of(falling) is None  # the end of the range is no floor
-
-
-# the study
 
 
 def test_the_answers_agree_with_what_is_known(run_study, monkeypatch):

@@ -49,8 +49,8 @@ SMALLER = {
 FEWER = {
     "work_precision": {
         "__main__.problems_of": lambda scene, modes: problems_of(scene, 2)[:2],
-        "measures.LONG_ENOUGH": 1e-3,
-        "measures.PATIENCE": 0.02,
+        "model.LONG_ENOUGH": 1e-3,
+        "model.PATIENCE": 0.02,
     },
     "shape": {"__main__.COARSE": (1, 1)},
     "claims": {"__main__.QUICK_PLANE": (12, 3)},

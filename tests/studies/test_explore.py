@@ -1,7 +1,5 @@
 """The window to explore, off screen: its sliders are moved, and its panels show the physics."""
 
-from __future__ import annotations
-
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
@@ -30,7 +28,7 @@ def move(seen: explore.Window, **to: float) -> str:
 
 
 def test_the_motion_is_carried_over_grazing_and_down_to_its_fold(seen):
-    """p4 of Eq. (1) lives on from grazing down to -1.3211e-2, and is not there on the way up."""
+    """p4 of Eq. (1) remains from grazing down to -1.3211e-2, and is not there on the way up."""
     assert move(seen, frequency=21.5, excess=1e-3) == move(seen, excess=-0.0132) == "period 4"
     assert move(seen, excess=-0.015) == move(seen, excess=-0.0132) == "period 1"
 
@@ -76,9 +74,9 @@ def test_what_cannot_be_computed_is_said_and_the_next_position_is_drawn(seen):
     assert move(seen, frequency=22.2) == "period 5"
 
 
-@pytest.mark.parametrize(("argv", "told"), [([], "display"), (["--set", "drive.kind=none"], "drive.kind")])
-def test_without_a_window_or_a_drive_it_says_so_in_a_sentence(capsys, argv, told):
+@pytest.mark.parametrize(("argv", "words"), [([], "display"), (["--set", "drive.kind=none"], "drive.kind")])
+def test_without_a_window_or_a_drive_it_says_so_in_a_sentence(capsys, argv, words):
     plt.switch_backend("agg")
     assert explore.main(argv) == 2
     said = capsys.readouterr().err
-    assert told in said and len(said.splitlines()) == 1
+    assert words in said and len(said.splitlines()) == 1

@@ -1,7 +1,5 @@
 """Films: where ball and plate are drawn, the frames of an orbit, and the files; with and without graphics."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from PIL import Image

@@ -1,7 +1,5 @@
 """Harmonic balance: exact where the motion is linear, and the orders that its kinks leave elsewhere."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
@@ -25,9 +23,9 @@ def test_a_motion_that_never_leaves_the_spring_is_solved_at_once(damping: float)
     found, model, w = balanced(oscillator, 5, 64), oscillator.model, oscillator.driven.angular_frequency
     both, pressed = np.outer(model.phi, model.phi), oscillator.load + 100.0 * model.phi
     stiff, loss = np.diag(model.omega**2) + 100.0 * both, np.diag(model.decay_rate) + damping * both
-    swing = np.linalg.solve(stiff - w**2 * np.eye(2) + 1j * w * loss, -0.1j * model.participation)
+    shaken = np.linalg.solve(stiff - w**2 * np.eye(2) + 1j * w * loss, -0.1j * model.participation)
     np.testing.assert_allclose(found.coefficients[0], np.linalg.solve(stiff, pressed), rtol=1e-12)
-    np.testing.assert_allclose(found.coefficients[1], swing, rtol=0, atol=1e-11)
+    np.testing.assert_allclose(found.coefficients[1], shaken, rtol=0, atol=1e-11)
     assert np.max(np.abs(found.coefficients[2:])) < 1e-12 and found.iterations <= 2
 
 
@@ -63,7 +61,7 @@ def test_a_dashpot_costs_an_order() -> None:
     assert math.log2(coarse / fine) == pytest.approx(1.0, abs=0.15)
 
 
-def test_what_cannot_be_balanced_is_refused_and_what_is_not_found_is_told() -> None:
+def test_what_cannot_be_balanced_is_refused_and_what_is_not_found_is_said() -> None:
     hard = Stop(gap=1.0, law=NewtonRestitution(local_restitution=0.5))
     with pytest.raises(ValueError, match="NewtonRestitution"):
         balanced(replace(two_masses(0.635), stop=hard), 21, 1024)

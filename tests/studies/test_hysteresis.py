@@ -1,7 +1,5 @@
 """The chain of descriptions from the map to the beam, and what it answers."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -87,5 +85,5 @@ def test_small_form(run_study):
     assert off["map"]["worst"] == pytest.approx(np.exp(max(error)))
     assert off["all_mode_kick"]["worst"] < 1.02 < off["map"]["median"]
     assert (ran.verdicts["hysteresis"], ran.verdicts["bands"]) == ("in part", "agrees")
-    beside = ran.summary["verdicts"]["neighbour_band"]  # p7 lives on where p6 is born
+    beside = ran.summary["verdicts"]["neighbour_band"]  # p7 remains where p6 is born
     assert beside["verdict"] == "agrees" and beside["note"].startswith("p7 at 22.60")

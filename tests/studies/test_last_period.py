@@ -1,7 +1,5 @@
 """The six transitions under errors and open assumptions, and the clouds of their strobe points in noise."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """The causes that can move p10 at 23.40 Hz, one by one."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The letter's six pairs: intervals of the free period, each by a second route."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -74,7 +72,7 @@ def test_at_an_excess_eq_1_has_them_all(single, rows):
     assert found.missed_by_s == pytest.approx(28.5e-6, abs=0.5e-6)
     born = [is_born(single, excess, 23.40, FREE_PERIOD_S) for excess in (3.75e-3, 3.79e-3)]
     assert born == [False, True]
-    for tau in (0.15, 0.2):  # p4 asks for a tau below 0.18 at 40.80 ms
+    for tau in (0.15, 0.2):  # p4 needs a tau below 0.18 at 40.80 ms
         one = with_values(single, {"restitution": tau})
         assert is_born(one, 4e-3, 21.50, FREE_PERIOD_S) == (tau < 0.18)
 

@@ -1,6 +1,4 @@
-"""The least number of modes: as good as is asked, no more, and checked against following the orbits."""
-
-from __future__ import annotations
+"""The least number of modes: as good as is needed, no more, and checked against following the orbits."""
 
 import math
 from dataclasses import replace
@@ -49,7 +47,7 @@ def test_errors_of_folds_from_kicks_are_those_of_the_orbits_themselves(letter_sc
 
 @pytest.mark.slow
 def test_the_reference_is_good_to_the_third_of_a_percent(letter_scene, monkeypatch):
-    """40 modes against 60: the folds differ by less than what the loosest and the tightest study asks for."""
+    """40 modes against 60: the folds differ by less than what the loosest and the tightest study needs."""
     monkeypatch.setattr("studies.physics.least_model.REFERENCE", 60)
     whole = reference_of(letter_scene)
     assert whole.n_modes == 60
@@ -67,7 +65,7 @@ def test_what_the_scene_says_itself_is_not_changed(letter_scene):
         assert least_modes(scene, needs) == (scene, "")
 
 
-def test_a_spring_of_ones_own_gets_its_own_number_and_a_tolerance_too_tight_is_told():
+def test_a_spring_of_ones_own_gets_its_own_number_and_a_tolerance_too_tight_is_said():
     ruler = read_scene("steel_ruler")
     scene, _ = least_modes(ruler, {"kick": 0.005})
     assert scene.modes.count in LADDER and scene.modes.count > 15

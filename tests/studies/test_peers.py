@@ -1,7 +1,5 @@
 """Outside solvers against the exact methods, each held to what its tolerance promises."""
 
-from __future__ import annotations
-
 import math
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
@@ -99,9 +97,9 @@ def test_meets_its_tolerance_with_the_same_touches(label: str, name: str) -> Non
     speed = np.abs(exact.impacts.approach).max()
     lost = 0.5 * speed**2 / float(case.oscillator.model.phi @ case.oscillator.model.phi)
     times, speeds = dict.fromkeys(("start", "end"), 30 * fastest), ("approach", "rebound")
-    for part, room in (times | dict.fromkeys(speeds, 100 * speed) | {"loss": 300 * lost}).items():
+    for part, bound in (times | dict.fromkeys(speeds, 100 * speed) | {"loss": 300 * lost}).items():
         found, truth = getattr(run.impacts, part), getattr(exact.impacts, part)
-        np.testing.assert_allclose(found, truth, rtol=0, atol=room * within)
+        np.testing.assert_allclose(found, truth, rtol=0, atol=bound * within)
     assert run.end.time == exact.end.time and run.evaluations > 50
 
 

@@ -1,7 +1,5 @@
 """The pictures of the README show what is computed: each carries its numbers."""
 
-from __future__ import annotations
-
 import json
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The soft wall: power laws of the kick, the period doubling at grazing, and the beam."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
@@ -23,9 +21,6 @@ def wall_at(frequency: float, hardness: float) -> SoftWall:
     return SoftWall(oscillator=single_mode_at(SCENE, frequency), hardness=hardness)
 
 
-# one collision
-
-
 @pytest.mark.parametrize("hardness", [1e2, 1e4, 1e6])
 def test_kick_of_small_peaks_and_the_rate_of_its_error(hardness):
     wall, error = wall_at(22.2, hardness), []
@@ -44,9 +39,6 @@ def test_kick_of_small_peaks_and_the_rate_of_its_error(hardness):
     if hardness > 1e3:
         assert error[0] == pytest.approx(-0.6 * 0.05**2, rel=0.05)
         assert math.log2(error[1] / error[0]) == pytest.approx(2.0, abs=0.05)  # in z: 1 in h
-
-
-# p1 and its doubling
 
 
 @pytest.mark.parametrize("frequency", [20.9, 22.2])
@@ -73,9 +65,6 @@ def test_a_soft_enough_wall_keeps_p1_stable():
     assert wall_at(22.2, 0.99 * least).doubling() is None
     assert wall_at(22.2, 1.01 * least).doubling()[0] > 0.0
     assert doubling_of(wall_at(22.2, 10.0)).excess is None
-
-
-# the beam
 
 
 @pytest.mark.parametrize(("frequency", "turns"), [(21.5, False), (22.2, True)])
@@ -105,9 +94,6 @@ def test_beam_with_hertz_contact(frequency, turns):
         run = strobed.at(factor * lost).orbit(moved, 4000).points
         drift = float(np.max(np.abs(run[-1] - run[-2]))), float(np.max(np.abs(run[1] - run[0])))
         assert (drift[0] < 0.1 * drift[1]) is stays
-
-
-# the study
 
 
 def test_the_letter_is_marked_on_its_spring_alone():

@@ -1,7 +1,5 @@
 """The flat U as a plate against closed forms, strip theory and an independent program; its modal models."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from types import SimpleNamespace
@@ -89,6 +87,6 @@ def test_plates_have_period_and_damping_of_the_beam(letter_scene, plates):
 
 
 def test_a_spring_that_is_no_flat_u_goes_without_the_plate():
-    told = []
-    assert compare_plate(read_scene("tight_fold"), SimpleNamespace(say=told.append)) == []
-    assert len(told) == 1 and "flat U" in told[0]
+    said = []
+    assert compare_plate(read_scene("tight_fold"), SimpleNamespace(say=said.append)) == []
+    assert len(said) == 1 and "flat U" in said[0]

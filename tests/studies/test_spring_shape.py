@@ -1,7 +1,5 @@
 """The readings of "U shaped": sizes by second routes, twist modes."""
 
-from __future__ import annotations
-
 import math
 
 import pytest
@@ -12,15 +10,12 @@ from beam.space import spatial_modes
 from studies.shell.scene import SceneError, read_scene, single_mode_of
 from studies.spring.shape.shapes import brought_to, kinds_of, reading_row, shape_of, shapes_of
 
-
-@pytest.fixture(scope="module")
-def folded_scene():
-    return read_scene("tight_fold")
+FOLDED = read_scene("tight_fold")
 
 
 @pytest.fixture(scope="module")
-def shapes(folded_scene):
-    return shapes_of(folded_scene)
+def shapes():
+    return shapes_of(FOLDED)
 
 
 @pytest.fixture(scope="module")
@@ -28,31 +23,31 @@ def rows(shapes):
     return {name: reading_row(shape) for name, shape in shapes.items()}
 
 
-def test_every_reading_has_the_free_period_of_the_letter(folded_scene, rows):
-    omega = single_mode_of(folded_scene).omega[0]
+def test_every_reading_has_the_free_period_of_the_letter(rows):
+    omega = single_mode_of(FOLDED).omega[0]
     assert 2.0 * math.pi / math.sqrt(omega**2 - 1.78**2) == pytest.approx(40.80e-3, rel=1e-9)
     for row in rows.values():
         assert 2.0 * math.pi * row.first_bending_hz == pytest.approx(omega, rel=1e-6)
 
 
-def test_the_sheet_of_the_plain_strip_by_the_frequency_equation(folded_scene, shapes):
+def test_the_sheet_of_the_plain_strip_by_the_frequency_equation(shapes):
     shape = shapes["plain"]
     strip = StripSection(material=shape.material, width=shape.width, thickness=shape.thickness)
     beam = uniform_beam(strip, shape.length, shape.tip)
-    assert exact_modes(beam, 1).omega[0] == pytest.approx(single_mode_of(folded_scene).omega[0], rel=1e-6)
+    assert exact_modes(beam, 1).omega[0] == pytest.approx(single_mode_of(FOLDED).omega[0], rel=1e-6)
 
 
 @pytest.mark.parametrize(
     ("name", "drawn", "close"), [("folded", folded_u, 1e-4), ("side_by_side", flat_u, 1e-3)]
 )
-def test_the_sheet_of_a_u_by_the_plane_model(folded_scene, shapes, name, drawn, close):
+def test_the_sheet_of_a_u_by_the_plane_model(shapes, name, drawn, close):
     shape = shapes[name]
     strip = StripSection(material=shape.material, width=shape.width, thickness=shape.thickness)
     spring = drawn(leg_length=shape.length, bend_radius=shape.bend_radius, section=strip, tip=shape.tip)
-    omega = single_mode_of(folded_scene).omega[0]
+    omega = single_mode_of(FOLDED).omega[0]
     assert natural_modes(assemble(spring), 1).omega[0] == pytest.approx(omega, rel=close)
-    if name == folded_scene.spring.kind.removesuffix("_u"):  # the scene has its tape on
-        assert shape.thickness == pytest.approx(folded_scene.spring.thickness_m, rel=2e-3)
+    if name == FOLDED.spring.kind.removesuffix("_u"):  # the scene has its tape on
+        assert shape.thickness == pytest.approx(FOLDED.spring.thickness_m, rel=2e-3)
 
 
 def test_the_table_says_what_the_study_claims(rows):
@@ -73,8 +68,8 @@ def test_kinds_of_the_folded_strip(shapes):
     assert kinds == ["bending", "breathing", "bending", "sideways", "breathing", "bending", "twist"]
 
 
-def test_shapes_that_cannot_be_are_refused(folded_scene):
+def test_shapes_that_cannot_be_are_refused():
     with pytest.raises(SceneError, match="bend_radius_m"):
-        shape_of(folded_scene.replace({"spring.width_m": 0.016}), "side_by_side")
+        shape_of(FOLDED.replace({"spring.width_m": 0.016}), "side_by_side")
     with pytest.raises(SceneError, match="no flange between"):
-        brought_to(shape_of(folded_scene, "channel"), 2.0 * math.pi * 5.0)
+        brought_to(shape_of(FOLDED, "channel"), 2.0 * math.pi * 5.0)

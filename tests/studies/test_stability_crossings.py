@@ -1,7 +1,5 @@
 """Crossings that methods miss and impacts that accumulate: theory against what the methods do."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
@@ -10,27 +8,27 @@ import pytest
 
 from contact import Regime, simulate
 from contact.integrators import INTEGRATORS, CentralDifference, Exact, GeneralisedAlpha, MoreauJean
-from studies.methods.crossings import Swing
+from studies.methods.crossings import Crossing
 from studies.methods.stability import accumulation, missed_crossings
 from studies.methods.stability.missed_crossings import OVERSHOOTS, invented, of_package, share_wrong, tried
 from studies.shell.scene import model_of, read_scene
 
 SCENE = read_scene("letter")
-ONE = missed_crossings.swing_of(SCENE)
-SIX = Swing.of(model_of(SCENE).truncated(6), ONE.oscillator.stop, 0.2)
+ONE = missed_crossings.crossing_of(SCENE)
+SIX = Crossing.of(model_of(SCENE).truncated(6), ONE.oscillator.stop, 0.2)
 PERIOD = 2.0 * math.pi / float(ONE.oscillator.model.omega[0])
 
 
-@pytest.mark.parametrize("swing", [ONE, SIX], ids=["one mode", "six modes"])
-def test_the_crossing_is_where_it_was_put(swing):
+@pytest.mark.parametrize("crossing", [ONE, SIX], ids=["one mode", "six modes"])
+def test_the_crossing_is_where_it_was_put(crossing):
     """Closed form against a fine sampling of the motion that the start state makes; one crossing in all."""
-    model, gap, lead = swing.oscillator.model, swing.oscillator.stop.gap, float(swing.leads(3)[1])
+    model, gap, lead = crossing.oscillator.model, crossing.oscillator.stop.gap, float(crossing.leads(3)[1])
     for overshoot in (0.1, 1e-3):
-        start, time = swing.start(overshoot, lead), np.linspace(0.0, lead + swing.tail, 40_001)
+        start, time = crossing.start(overshoot, lead), np.linspace(0.0, lead + crossing.tail, 40_001)
         turn = np.multiply.outer(time, model.omega)
         tip = np.cos(turn) @ (model.phi * start.displacement)
         tip += np.sin(turn) @ (model.phi * start.velocity / model.omega)
-        assert tip / gap - 1.0 == pytest.approx(swing.height_at(overshoot, time - lead), abs=1e-12)
+        assert tip / gap - 1.0 == pytest.approx(crossing.height_at(overshoot, time - lead), abs=1e-12)
         assert np.count_nonzero(np.diff(tip > gap)) == 2
         assert tip.max() / gap - 1.0 == pytest.approx(overshoot, rel=1e-4)
 
@@ -40,7 +38,7 @@ def test_the_crossing_is_where_it_was_put(swing):
 def test_exact_methods_miss_none_and_invent_none(name, modes):
     trial = of_package(SCENE, INTEGRATORS[name], {})
     if modes == 6:
-        trial = replace(trial, swing=SIX)
+        trial = replace(trial, crossing=SIX)
     for overshoot in (*OVERSHOOTS, *-OVERSHOOTS):
         assert share_wrong(trial, float(overshoot), 6) == 0.0, overshoot
 
@@ -49,7 +47,7 @@ def test_exact_methods_miss_none_and_invent_none(name, modes):
 def test_a_grid_misses_what_theory_says(kind):
     trial = of_package(SCENE, kind, {"step": PERIOD / 100})
     for overshoot in (1e-3, 3e-4, 1e-4, 1e-5, 1e-7):
-        theory = float(missed_crossings.share_missed(overshoot, trial.step, ONE.pace, trial.percussions))
+        theory = float(missed_crossings.share_missed(overshoot, trial.step, ONE.rate, trial.percussions))
         assert share_wrong(trial, overshoot, 200) == pytest.approx(theory, abs=0.02)
 
 
@@ -77,9 +75,6 @@ def test_rows_of_methods_without_and_with_looks():
     (half, _invented), arrays = tried(trial, 4)
     assert half.theory == pytest.approx((2 * math.pi / 100) ** 2 / 32, rel=1e-9)
     assert half.refused is False and len(arrays) == 2
-
-
-# accumulation
 
 
 @pytest.mark.parametrize("e", [0.3, 0.7, 0.99])

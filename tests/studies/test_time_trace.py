@@ -1,7 +1,5 @@
 """The settled orbit against time: its period, its collision, its spectrum, and what the study writes."""
 
-from __future__ import annotations
-
 from dataclasses import fields
 from types import SimpleNamespace
 
@@ -63,8 +61,8 @@ def test_below_grazing_there_is_no_impact_and_one_line(run_study, letter_scene):
     kept = beam_at(letter_scene.replace({"modes.count": len(found["modes_hz"])}), 21.5)
     base = 0.99 * letter_scene.stop.gap_m / abs(kept.tip_response())
     size = (2.0 * np.pi * 21.5) ** 2 * base / 9.80665
-    told = found["drive_amplitude_m"], found["drive_acceleration_g"]
-    assert told == pytest.approx((base, size), rel=1e-6)
+    said = found["drive_amplitude_m"], found["drive_acceleration_g"]
+    assert said == pytest.approx((base, size), rel=1e-6)
 
 
 COARSE = (

@@ -1,6 +1,4 @@
-"""The tour runs from top to bottom, and what it prints is what the physics asks for."""
-
-from __future__ import annotations
+"""The tour runs from top to bottom, and what it prints is what the physics requires."""
 
 import runpy
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The main job: the letter's six transitions in four descriptions."""
 
-from __future__ import annotations
-
 import json
 
 import pytest

@@ -1,7 +1,5 @@
 """One mode with the restitution and the delay of the beam's own collisions."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from functools import partial

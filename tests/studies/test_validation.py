@@ -1,7 +1,5 @@
 """Published numbers: the study, and each source by another route."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
@@ -13,8 +11,7 @@ from scipy.optimize import brentq
 
 from contact import LinearContact, NewtonRestitution, NotPeriodic, State, Stop, StroboscopicMap, simulate
 from studies.methods.validation import __main__ as program
-from studies.methods.validation.one_mode import driven
-from studies.methods.validation.two_beams import both_beams
+from studies.methods.validation.model import both_beams, driven
 
 
 def test_every_source_is_compared_and_one_that_fails_is_a_failed_row(run_study, monkeypatch):

@@ -1,7 +1,5 @@
 """Work and precision: reference by closed forms and a second route, orders, front, known crossings."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
@@ -12,22 +10,19 @@ from oscillators import modes_on_stop, newton
 import contact
 from contact import ContactLaw, HertzContact, LinearContact, Stop, before_collision, first_collision, simulate
 from contact.integrators import CentralDifference, Exact
+from studies.letter import TIME_TRACE_EXCESS
 from studies.methods.peers import missing_solvers
 from studies.methods.work_precision import gradients
 from studies.methods.work_precision.costs import heyoka_orbit
-from studies.methods.work_precision.measures import Reference, missed_share, reference_of, rows_of
 from studies.methods.work_precision.methods import EXACT, STEPPED, Setting, Sweep, sweeps_for
 from studies.methods.work_precision.methods import STEPS as STEPS_OF
-from studies.methods.work_precision.problems import EXCESS, Problem, driven_problem, hertz_beam, linear_beam
+from studies.methods.work_precision.model import Reference, in_turns, missed_share, reference_of, rows_of
+from studies.methods.work_precision.problems import Problem, driven_problem, hertz_beam, linear_beam
 from studies.methods.work_precision.reference import extended_motion
-from studies.methods.work_precision.timing import in_turns
 from studies.shell.scene import read_scene, single_mode_at
 
 SCENE = read_scene("letter", [])
 FEW_MODES = SCENE.replace({"modes.count": 4})
-
-
-# -------------------------------------------------------------------------------------------- the reference
 
 
 def leaf(law: ContactLaw, excess: float = 0.013) -> contact.ImpactOscillator:
@@ -72,9 +67,6 @@ def test_what_the_reference_cannot_follow_is_refused() -> None:
         extended_motion(deep, start, 0.5 * (touch.start[0] + touch.end[0]))
 
 
-# ------------------------------------------------------------------------------------ rows and what they say
-
-
 def thrown() -> Reference:
     """Three modes that touch where the run begins, on the grid: nothing scatters about the stated order."""
     driven = leaf(LinearContact(stiffness=45000.0))
@@ -102,7 +94,7 @@ def test_errors_fall_with_the_square_of_the_step(label: str) -> None:
 def test_linear_contact_lasts_as_long_as_that_of_hertz() -> None:
     oscillator, hertz = linear_beam(FEW_MODES), hertz_beam(FEW_MODES)
     assert isinstance(oscillator.stop.law, LinearContact)
-    assert oscillator.excess == pytest.approx(EXCESS, rel=1e-9)
+    assert oscillator.excess == pytest.approx(TIME_TRACE_EXCESS, rel=1e-9)
     wanted = first_collision(hertz).contact_time
     assert first_collision(oscillator).contact_time == pytest.approx(wanted, rel=1e-11)
 

@@ -19,8 +19,6 @@ Writes:  outcomes.csv (a row a beam), islands.csv, born_period.csv (a row a cell
          breakdown.csv (a row a strobed point of the scans), and the figures breakdown, born_period
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import Annotated
@@ -56,8 +54,7 @@ FACTORS = (0.25, 0.5, 1.0, 1.5, 2.0, 3.0, 8.0)
 QUICK_MASSES_G, QUICK_FACTORS = (3.5, 4.0), (1.0, 2.0)
 """Ball and mount [g], factors on the damping of the higher modes."""
 
-MOST_SCANNED = 4
-"""Cells with period 6 whose scans are made: those that depart least from the scene."""
+MOST_SCANNED = 4  # cells with period 6 whose scans are made: those that depart least from the scene
 
 
 @study(
@@ -103,7 +100,7 @@ def breakdown(
     run.figure("breakdown", figure.draw_scans(shown, tau, letters=run.letters), figure.SCANS)
     born = figure.draw_born(cells, scene.tip.mass_kg, found, letters=run.letters)
     run.figure("born_period", born, figure.BORN)
-    tell(run, outcomes[1], found, known[taus.index(tau)])
+    findings(run, outcomes[1], found, known[taus.index(tau)])
     judge(run, maximal_period(nordmark), outcomes, found, known)
     return {
         "excess_of_letters_chaos_as_rho": nordmark.excess(CHAOS_AT),
@@ -142,7 +139,7 @@ def store(run: Run, scans: Sequence[tuple[Outcome, Mapping[str, Diagram]]], graz
     run.table("breakdown", points, "Strobed points of the scans.", of=StrobePoint, show=())
 
 
-def tell(run: Run, beam: Outcome, found: Outcome | None, own: Island) -> None:
+def findings(run: Run, beam: Outcome, found: Outcome | None, own: Island) -> None:
     """The findings: what is born of the calibrated beam, and of the one found; the island of Eq. (1)."""
     born = word(beam.born_period) if beam.born_period else "no periodic motion"
     saw = f"; the letter saw p{BORN_PERIOD}" * run.letters

@@ -1,7 +1,5 @@
 """The orbit diagrams of Fig. 5 below one another, and the born period as a map of labelled cells."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 import numpy as np

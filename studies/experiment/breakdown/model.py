@@ -5,8 +5,6 @@ prints no drive amplitude with Fig. 5). What is not printed can be varied: the m
 the thickness that keeps T, and a factor on the damping of the modes above the first.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
@@ -15,11 +13,11 @@ from typing import Annotated
 import numpy as np
 
 from beam import ModalModel
-from contact import HarmonicDrive, ImpactOscillator, MaximalFamily, Stop, StroboscopicMap
+from contact import HarmonicDrive, ImpactOscillator, Stop, StroboscopicMap
 from contact.orbits import Shooting, born, born_period, fold_excess, orbit_diagram
 from studies import letter
 from studies.physics.calibration import calibrate, calibrate_thickness
-from studies.physics.descriptions import Diagram, or_none, up_and_down
+from studies.physics.descriptions import Diagram, fold_orbit, or_none, up_and_down
 from studies.shell.scene import Scene, SceneError, contact_law_of, harmonic, model_of, single_mode_of
 
 FREQUENCY_HZ, FREE_PERIOD_S = letter.BREAKDOWN["frequency_hz"], letter.BREAKDOWN["free_period_s"]
@@ -28,8 +26,7 @@ DECAY_RATE_PER_S, BORN_PERIOD = letter.BREAKDOWN["decay_rate_per_s"], letter.BRE
 BORN_EXCESS, SEARCH_CYCLES = 1e-3, 1500
 """Where the born period is read, and the drive periods that a motion gets to settle there."""
 
-NEAR = 0.2
-"""Relative distance from the free period of Fig. 5 beyond which a spring is another one."""
+NEAR = 0.2  # relative distance from the free period of Fig. 5 beyond which a spring is another one
 
 CHAOS_AT = letter.BREAKDOWN["chaos_at"]
 LOWEST, HIGHEST = -0.14, 0.012
@@ -38,8 +35,7 @@ LOWEST, HIGHEST = -0.14, 0.012
 ISLAND_STEP, ISLAND_CYCLES = 5e-4, 1500
 """Step of the excess and drive periods at each, for the end of the island; beyond it chaos is a transient."""
 
-LAST = 0.05
-"""Impacts may go on below p3 for this part of its excess and still end with it."""
+LAST = 0.05  # impacts may go on below p3 for this part of its excess and still end with it
 
 
 def fig_5(scene: Scene) -> Scene:
@@ -195,7 +191,7 @@ def island(scene: Scene, restitution: float, *, step: float = ISLAND_STEP) -> tu
     grazing.
     """
     strobed = single_mode(scene, restitution).strobed()
-    fold = MaximalFamily.from_oscillator(strobed.oscillator, period=3).fold()
+    fold = fold_orbit(strobed.oscillator, 3)
     assert fold is not None  # f T lies in the band of p3
     orbit = Shooting(oscillator=strobed.oscillator, period=3).at_speed(1.02 * fold.speed)
     whole = orbit_diagram(

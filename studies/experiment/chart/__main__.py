@@ -5,7 +5,7 @@ without impacts down to its fold; at grazing the period follows the bands of the
 double, and chaos lies between. At each frequency the amplitude is raised and lowered again with the state
 carried along; each cell gets period (up to 64) and impacts of the orbit on which the motion settles.
 
-At one drive frequency, --cut-hz, two more questions are asked of Eq. (1) and of the beam with its N modes:
+At one drive frequency, --cut-hz, there are two more questions on Eq. (1) and on the beam with its N modes:
 
     cut      the largest Lyapunov exponent of the settled motions: periodic or chaotic
     basins   for Eq. (1) below grazing: the orbit to which each start on the strobe plane leads
@@ -19,8 +19,6 @@ Every finished column is kept (``studies.shell.sweep``): the same command goes o
 Run:     python -m studies chart [--model beam] [--quick]
 Writes:  chart_MODEL.npz (cells), folds_MODEL.csv; cut.csv, cut.npz; basins.npz; and the figures of these
 """
-
-from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping
@@ -74,11 +72,9 @@ LARGEST_PERIOD = 64
 NEEDS = {"born_period": 0.0, "fold_middle": 0.07}
 """What the chart of the beam rests on; Eq. (1) needs nothing."""
 
-CUT_NEEDS = {"fold": 0.05}
-"""Accuracy requirement of the cut."""
+CUT_NEEDS = {"fold": 0.05}  # accuracy requirement of the cut
 
-MOST_REASONS = 20
-"""Failures with a sentence of their own; all are in the columns."""
+MOST_REASONS = 20  # failures with a sentence of their own; all are in the columns
 
 
 @study(quick={"side": 32})
@@ -108,7 +104,7 @@ def chart(
     settings = {"model": model, "plane": plane, "knee": KNEE, "most_cycles": bound, "scene": scene.values()}
     work, name = partial(column_at, scan=scan, plane=plane), f"{model}-{columns}x{rows}"
     found = sweep(run, name, settings, plane.frequencies().tolist(), work, fresh=fresh)
-    tell_failures(run, found)
+    note_failures(run, found)
     return {
         "model": model,
         "modes": oscillator.n_modes,
@@ -120,8 +116,8 @@ def chart(
     }
 
 
-def tell_failures(run: Run, columns: list[Column]) -> None:
-    """Every failed cell counts; the first are told."""
+def note_failures(run: Run, columns: list[Column]) -> None:
+    """Every failed cell counts; the first are said."""
     for column in columns:
         for way, place in np.argwhere(column["reason"] != ""):
             where = f"{float(column['frequency_hz']):.6g} Hz, excess {float(column['excess'][place]):.6g}"
@@ -170,7 +166,7 @@ def cut(scene: Scene, run: Run, f: float) -> Mapping[str, object]:
         rows, strobes = rows + scan, strobes + recorded
         for reason in failures:
             run.failed("scan", reason)
-    words = "Motions that settled at one drive frequency, told apart by the largest Lyapunov exponent."
+    words = "Motions that settled at one drive frequency, classified by the largest Lyapunov exponent."
     run.table("cut", rows, words, of=settled.Settlement)
     holds = "Strobed points [m, or rad for a rotation] at each excess [1], row by row as in cut.csv."
     run.arrays("cut", holds, points=np.array(strobes), excess=[row.excess for row in rows])

@@ -1,13 +1,11 @@
 """The chart as a figure: upward scan left, downward scan right; period above, impacts in a period below.
 
 Colours are the seven of the house style, one after the other with the period, lighter for 8 to 14, so that
-neighbouring periods and period doublings always differ; every region with room for it says its number.
+neighbouring periods and period doublings always differ; every region that is large enough has its number.
 The upright axis is that of the grid (``model.sheared``).
 
 Figures of the settled motions: strobe points and exponents of a scan, and basins on the strobe plane.
 """
-
-from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
@@ -47,8 +45,7 @@ IMPACTS = ["white", *map(to_hex, VIRIDIS(np.linspace(1.0, 0.1, len(CLASSES))))]
 
 NONE, FAILED = "0.33", "red"
 
-LEAST_WIDTH = 0.04
-"""Part of a panel's sides that a region must have in any direction to be given its number."""
+LEAST_WIDTH = 0.04  # part of a panel's sides that a region must have in any direction to be given its number
 
 EDGE, MARKED = 0.0006, 10
 """Distance of the marks for band edges from grazing, where they hold [excess]; largest m of a mark."""

@@ -15,8 +15,6 @@ Theory draws over the chart the band edges of the map, and the folds at which p_
 (``contact.orbits``). Only orbits with one impact, and only where no further touch spoils them (certified).
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -24,8 +22,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beam import InvalidValue
-from contact import Band, ImpactOscillator, MaximalFamily
+from contact import Band, ImpactOscillator
 from contact.orbits import AmplitudeScan, PeriodicOrbit, Shooting, fold_along_frequency
+from studies.physics.descriptions import fold_orbit
 from studies.shell.options import MOST_CELLS
 from studies.shell.scene import Scene, band_of
 from studies.shell.sweep import Column
@@ -101,11 +100,9 @@ def side_by_side(columns: Sequence[Column]) -> dict[str, NDArray[np.int32]]:
     }
 
 
-LARGEST = 24
-"""Largest m that is drawn; its band ends at 23.98 Hz for the letter's period."""
+LARGEST = 24  # largest m that is drawn; its band ends at 23.98 Hz for the letter's period
 
-FEWEST = 7
-"""Folds of the beam looked for in each band at least, so that its curve is smooth."""
+FEWEST = 7  # folds of the beam looked for in each band at least, so that its curve is smooth
 
 
 def bands_in(scene: Scene, low: float, high: float) -> tuple[Band, ...]:
@@ -120,7 +117,7 @@ def folds_of_single_mode(oscillator: ImpactOscillator, frequencies: np.ndarray, 
     for frequency in frequencies.tolist():
         here = _driven(oscillator, frequency)
         for period in range(2, LARGEST + 1):
-            fold = MaximalFamily.from_oscillator(here, period=period).fold()
+            fold = fold_orbit(here, period)
             if fold is not None and fold.excess > lowest and fold.admissible:
                 found.append(Fold(period=period, frequency_hz=frequency, excess=fold.excess))
     return found
@@ -135,7 +132,7 @@ def folds_of_beam(
 ) -> list[Fold]:
     """The folds of the beam in and a little below the bands `near`, above the excess `lowest`.
 
-    At those of `frequencies` [Hz] that lie there, or where these are few at some more within their range.
+    At the `frequencies` [Hz] that lie there, or where these are few at some more within their range.
     """
     found = []
     for band in near:

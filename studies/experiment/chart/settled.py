@@ -10,8 +10,6 @@ the orbit's, in x and x'/omega: for p_m then nothing else is near, and next to t
 what is left of the free oscillation is a small part of what the tip keeps off the wall.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Annotated, Any
@@ -20,14 +18,13 @@ import numpy as np
 
 from contact import ContactError, State, StroboscopicMap
 from contact.orbits import Exponents, Settled, born, map_exponents, orbit_exponents, settle
-from studies.physics.descriptions import TITLES
+from studies.physics.descriptions import TITLES, both_ways
 from studies.shell.scene import READOUT, Scene, single_mode_at
 
 CUT, QUICK_CUT = (np.linspace(-0.016, 0.06, 39), 600), (np.linspace(-0.016, 0.06, 11), 100)
 """Amplitudes of the cut [1] and drive periods in the averages of the exponents; of the small form."""
 
-SIGNIFICANT = 3.0
-"""Standard errors by which an exponent must differ from zero to be told from it."""
+SIGNIFICANT = 3.0  # standard errors by which an exponent must differ from zero to count
 
 ALIGN = 20
 """Periods in which tangents find their direction: the slowest contraction between two of them is e^-0.08."""
@@ -51,8 +48,7 @@ class Settlement:
 
 
 def kind_of(strobed: StroboscopicMap, settled: Settled[State], cycles: int) -> tuple[str, Exponents]:
-    """Chaos told from a long period or a slow transient by the exponents, averages over `cycles` drive
-    periods."""
+    """The kind of motion, and its exponents: averages over `cycles` drive periods where it has no period."""
     if settled.period:
         kind = PERIODIC if settled.impacts else WITHOUT
         return kind, orbit_exponents(strobed, settled.end, settled.period)
@@ -70,39 +66,40 @@ def carried(
 
     On the way up a motion stays without impacts as far as it can, on the way down it stays on p_m.
     """
-    name, strobed = named
-    rows, points, failures = [], [], []
-    state = strobed.at(float(values[0])).steady()
-    places = [("up", e) for e in values.tolist()] + [("down", e) for e in values[::-1].tolist()]
-    for direction, excess in places:
-        here = strobed.at(excess)
-        try:
-            settled = settle(here, state, most_cycles=scene.scan.settle_cycles)
-            state = replace(settled.end, time=0.0)
-            orbit = here.orbit(state, scene.scan.record_cycles)
-            kind, exponents = kind_of(here, settled, cycles)
-        except ContactError as error:
-            failures.append(f"{TITLES[name]}, excess {excess:.6g}, {direction}: {error}")
-            continue
-        points.append(here.readout(orbit.points, READOUT))
-        impacts = settled.impacts if settled.period else 0
-        found: dict[str, Any] = {"period": settled.period, "impacts": impacts}
-        found |= {"lyapunov_map": exponents.largest, "error_map": exponents.error}
-        rows.append(Settlement(model=name, direction=direction, excess=excess, kind=kind, **found))
+    (name, strobed), rows, points, failures = named, list[Settlement](), list[np.ndarray](), list[str]()
+
+    def scan(direction: str, excesses: np.ndarray, state: State) -> tuple[None, State]:
+        for excess in excesses.tolist():
+            here = strobed.at(excess)
+            try:
+                settled = settle(here, state, most_cycles=scene.scan.settle_cycles)
+                state = replace(settled.end, time=0.0)
+                orbit = here.orbit(state, scene.scan.record_cycles)
+                kind, exponents = kind_of(here, settled, cycles)
+            except ContactError as error:
+                failures.append(f"{TITLES[name]}, excess {excess:.6g}, {direction}: {error}")
+                continue
+            points.append(here.readout(orbit.points, READOUT))
+            impacts = settled.impacts if settled.period else 0
+            found: dict[str, Any] = {"period": settled.period, "impacts": impacts}
+            found |= {"lyapunov_map": exponents.largest, "error_map": exponents.error}
+            rows.append(Settlement(model=name, direction=direction, excess=excess, kind=kind, **found))
+        return None, state
+
+    both_ways(strobed, values, scan)
     return rows, points, failures
 
 
 EXCESS = -0.006
 
-FAR = 1.5
-"""Half the side of the plane of starts, in x/gap and x'/(2 pi f gap)."""
+FAR = 1.5  # half the side of the plane of starts, in x/gap and x'/(2 pi f gap)
 
 NEAR, OF_EXCESS = 1e-5, 0.1
 """Distance from an orbit at which a motion has reached it, in gaps (a basin narrower than that is missed),
 and at most in excesses below grazing."""
 
 MOST_PERIODS, STRETCH = 4000, 32
-"""Bound of a motion in the basins (what has not been told by then is something else); strobes looked at
+"""Bound of a motion in the basins (what has reached no orbit by then is something else); strobes looked at
 together."""
 
 

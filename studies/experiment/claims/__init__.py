@@ -1,1 +1,1 @@
-"""The letter's other claims, one file a claim."""
+"""Claims of the letter without a figure: loss, secondary bifurcations, universality, period adding."""

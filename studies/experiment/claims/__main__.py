@@ -17,8 +17,6 @@ Run:     python -m studies claims [--positions N]
 Writes:  loss.csv, universality.csv, and the figure loss
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import replace
@@ -47,20 +45,16 @@ from studies.shell.digits import written
 from studies.shell.scene import Scene, band_of, corresponding, harmonic, nordmark_at
 from studies.shell.study import Run, study
 
-SCANNED_HZ = (19.62, 23.75)
-"""Across the bands of p3 to p16, for the letter's spring."""
+SCANNED_HZ = (19.62, 23.75)  # across the bands of p3 to p16, for the letter's spring
 
 PLANE, QUICK_PLANE = (240, 46), (60, 10)
 """Frequencies and restitutions over which secondary bifurcations are counted."""
 
-SLACK = 0.02
-"""Change of a share of the scanned frequencies that is that of one cell or two."""
+SLACK = 0.02  # change of a share of the scanned frequencies that is that of one cell or two
 
-TOP = 0.75
-"""Part of a band above which a frequency is next to its upper edge."""
+TOP = 0.75  # part of a band above which a frequency is next to its upper edge
 
-CLOSER = 1.0 / 16.0
-"""Part of the born excess at which a disagreement is looked at again."""
+CLOSER = 1.0 / 16.0  # part of the born excess at which a disagreement is looked at again
 
 EIGENVALUE, ADDED = 0.45, range(4, 21)
 """Of the overdamped map: its eigenvalue, between 1/4 and 2/3 where windows are parted by chaos; periods."""

@@ -1,7 +1,5 @@
 """Hysteresis and secondary bifurcation against restitution."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 

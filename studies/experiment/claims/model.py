@@ -11,8 +11,6 @@ the loss; |rho_m| itself rises in the map, because rho per F falls faster.
 grazing the period that the map has as rho -> 0+.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -28,18 +26,15 @@ from studies.physics.calibration import bare_cantilever, with_mass_ratio
 from studies.physics.descriptions import falls, strobed_at
 from studies.shell.scene import Scene, model_of, nordmark_at, single_mode_at, single_mode_of
 
-SPAN = (0.802, 0.956)
-"""f T from the band of p3 to that of p11."""
+SPAN = (0.802, 0.956)  # f T from the band of p3 to that of p11
 
-RESTITUTIONS = tuple(np.round(np.linspace(0.0, 0.9, 19), 3).tolist())
-"""tau of the curves."""
+RESTITUTIONS = tuple(np.round(np.linspace(0.0, 0.9, 19), 3).tolist())  # tau of the curves
 
 ABOVE, FASTEST, EXACT = 1e-6, 10.0, 1e-14
 """The bifurcation is looked for from next to the fold (relative) to this approach speed over 2 pi f gap, far
 beyond the letter's amplitudes, to a relative accuracy."""
 
-MOST_CYCLES = 3000
-"""Bound of a transient [drive periods]."""
+MOST_CYCLES = 3000  # bound of a transient [drive periods]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -22,8 +22,6 @@ Writes:  collisions.csv (a row an approach), floors.csv (smallest restitution ov
          figures speed and mass
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from functools import partial
@@ -41,7 +39,6 @@ from studies.experiment.effective_impact.model import (
     select,
     series_of,
 )
-from studies.physics.calibration import Targets
 from studies.shell.digits import written
 from studies.shell.run import Verdict
 from studies.shell.scene import Scene, SceneError, harmonic
@@ -50,11 +47,9 @@ from studies.shell.study import Run, study
 FINE_MESH = {"spring.elements_per_leg": 120, "spring.elements_on_arc": 60}
 """Twice the default, for the collision that the answer quotes."""
 
-FULL, QUICK = (1, 40), (4, 20)
-"""Every so manieth value of a curve, with so many modes."""
+FULL, QUICK = (1, 40), (4, 20)  # every so manieth value of a curve, with so many modes
 
-NEAR = 0.05
-"""How far a restitution may be from "about 0.1"."""
+NEAR = 0.05  # how far a restitution may be from "about 0.1"
 
 WHERE = "At a small amplitude above grazing", "At the amplitude of Fig. 4"
 """The excess of a first collision, for another spring and for the letter's."""
@@ -68,7 +63,7 @@ def effective_impact(scene: Scene, run: Run) -> Mapping[str, object]:
             "spring.kind modal_data has no tip mass to vary: this study needs a spring that is drawn"
         )
     every, modes = QUICK if run.quick else FULL
-    frequency = min(scene.drive.frequencies_hz, key=lambda f: abs(f - Targets.frequency_hz))
+    frequency = min(scene.drive.frequencies_hz, key=lambda f: abs(f - letter.TRANSITION_HZ[5]))
     fine = scene
     if not (scene.spring.elements_per_leg or scene.spring.elements_on_arc):
         fine = scene.replace(FINE_MESH)

@@ -1,7 +1,5 @@
 """Restitution, delay and kick side by side against one quantity."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import Any

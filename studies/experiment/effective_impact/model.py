@@ -60,8 +60,7 @@ MASS_RATIOS = (
 )
 RESTITUTIONS = (1.0, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2, 0.1)
 
-FINE = 2001
-"""Points at which a spline is looked through: the smallest value is good to 1e-6 of itself."""
+FINE = 2001  # points at which a spline is looked through: the smallest value is good to 1e-6 of itself
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,1 +1,1 @@
-"""Where the p_m orbits end, in nine descriptions, and the causes of their differences."""
+"""Where the p_m orbits end, in nine descriptions, and what makes them differ: the letter's Fig. 3."""

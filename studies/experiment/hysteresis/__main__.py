@@ -22,8 +22,6 @@ Writes:  hysteresis.csv (a row a frequency and period), causes.csv (factors at t
          bands.csv (a row a frequency of each band), and the figures hysteresis (as Fig. 3), branch and bands
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -64,8 +62,7 @@ from studies.shell.study import Run, study
 PERIODS, BANDS = range(3, 11), range(3, 12)
 """Periods whose folds are followed, and whose bands are looked through."""
 
-NEARLY = 1.1
-"""A factor up to this counts as none, and a description that is off by no more as enough."""
+NEARLY = 1.1  # a factor up to this counts as none, and a description that is off by no more as enough
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,7 +1,5 @@
 """The letter's Fig. 3 with four of the descriptions, and the bands that the experiment crosses."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from functools import partial
 from typing import Any
@@ -30,8 +28,7 @@ BRANCH = (
 
 BANDS = "Bands of p_m in the plane of α and γ as ρ goes to 0, and the path of the experiment through them."
 
-THIN = np.array([1.0, 1.0005])
-"""Width of a mark for an edge whose error is not known."""
+THIN = np.array([1.0, 1.0005])  # width of a mark for an edge whose error is not known
 
 EVENTS = {"grazing": "a second touch grazes", "undecided": "event not resolved"}
 """Event of a branch -> its name in the picture, where it is another one."""

@@ -16,8 +16,6 @@ With alpha = 2 sqrt(gamma) cos(theta) and gamma = exp(-mu/f) the edges in freque
 curves in the plane of alpha and gamma, with mu as parameter. The experiment crosses them along its own mu.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Annotated
@@ -34,27 +32,13 @@ from studies.shell.scene import Scene, band_of, beam_at, corresponding, nordmark
 CHAIN = ("map", "single_mode", "measured_kick", "kick_of_velocity", "two_parameters", "all_mode_kick", "beam")
 DESCRIPTIONS = ("map_printed", "map_measured_kick", *CHAIN)
 
-CAUSES = dict(
-    zip(
-        (
-            "truncation_of_the_map",
-            "size_of_the_kick",
-            "kick_against_velocity",
-            "delay",
-            "higher_modes_in_the_flight",
-            "ringing_met_by_the_next_collision",
-        ),
-        pairwise(CHAIN),
-        strict=True,
-    )
-)
+NAMES = "truncation_of_the_map size_of_the_kick kick_against_velocity delay higher_modes_in_the_flight"
+CAUSES = dict(zip(f"{NAMES} ringing_met_by_the_next_collision".split(), pairwise(CHAIN), strict=True))
 """Cause -> the two neighbours in the chain between which it lies."""
 
-FREQUENCIES_HZ = (19.6, 23.8)
-"""Of the letter's spring; others at the same f T."""
+FREQUENCIES_HZ = (19.6, 23.8)  # of the letter's spring; others at the same f T
 
-EDGE = 1e-7
-"""Distance of the last frequency in a band from its upper edge, relative to the band."""
+EDGE = 1e-7  # distance of the last frequency in a band from its upper edge, relative to the band
 
 BELOW_BAND = 0.5
 """How far below its band in the map a period is looked for, in widths of the band: there it coexists."""
@@ -91,7 +75,7 @@ class Folds:
 
 
 def map_fold(nordmark: NordmarkMap, m: int, kick: float | None = None) -> float | None:
-    """The fold of the map where it lies below grazing; `kick` stands for 1 + tau in the scale of rho."""
+    """The fold of the map where it lies below grazing; `kick` replaces 1 + tau in the scale of rho."""
     found = fold_excess(nordmark, m)
     scale = 1.0 if kick is None else (kick / (1.0 + nordmark.restitution)) ** 2
     return None if found is None or found >= 0.0 else scale * found

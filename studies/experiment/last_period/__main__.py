@@ -19,8 +19,6 @@ Writes:  sensitivity.csv (a row a frequency, description and change), p10.csv (a
          clouds.csv (a row a period), and the figure fold_against_parameter
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import Annotated
@@ -29,20 +27,16 @@ from studies.experiment.last_period import changes, pairs
 from studies.experiment.last_period.causes import Effect, causes_of, effect_of
 from studies.experiment.last_period.changes import DESCRIPTIONS, changes_of, transitions_after, transitions_at
 from studies.experiment.last_period.clouds import Clouds, clouds_of, frequency_of, key_of
-from studies.letter import AMPLITUDE_STABILITY, PERIODS
+from studies.letter import AMPLITUDE_STABILITY, TRANSITION_HZ
 from studies.physics.descriptions import strobed_at
 from studies.physics.drive_noise import DRIFTS, SMALL, TIMES, DriveNoise
 from studies.shell.digits import written
 from studies.shell.scene import Scene, SceneError, harmonic, model_of, single_mode_at
 from studies.shell.study import Run, study
 
-HIGHEST = max(PERIODS.values())
-"""m of the last transition that the letter saw."""
+HIGHEST = max(TRANSITION_HZ)  # m of the last transition that the letter saw
 
-FREQUENCY_HZ = 22.20  # the letter's p5
-
-IN_NOISE = range(3, 17), range(8, 12)
-"""m of Eq. (1) in noise: the full form, the small one."""
+IN_NOISE = range(3, 17), range(8, 12)  # m of Eq. (1) in noise: the full form, the small one
 
 
 @study(needs={"fold": 0.05}, quick={"correlation_times": (0.0, 100.0)})
@@ -102,7 +96,7 @@ def pair_intervals(scene: Scene, run: Run) -> list[pairs.Interval]:
     """The free periods at which the letter's pairs are born."""
     if not run.letters:
         return []
-    intervals_of = partial(pairs.intervals_of, single_mode_at(scene, FREQUENCY_HZ))
+    intervals_of = partial(pairs.intervals_of, single_mode_at(scene, TRANSITION_HZ[5]))
     columns = run.map(intervals_of, pairs.EXCESSES[: 2 if run.quick else None], "excesses of the pairs")
     rows = [row for column in columns for row in column]
     run.table("pairs", rows, "Free periods with the letter's six pairs.", of=pairs.Interval, show=())

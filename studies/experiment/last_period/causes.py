@@ -8,8 +8,6 @@
 They act on Eq. (1), the exciter with phi and Gamma of the beam's mode 1, where no other description is named.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -36,11 +34,9 @@ from studies.shell.scene import (
 EXCESSES = {f"at_excess_{excess:g}": excess for excess in (AMPLITUDE_STABILITY, 1e-3, 4e-3, 1e-2)}
 """Of the columns `born` and `others`, by their names."""
 
-CYCLES, SUSPENSION_RATIO = 8000, 0.1
-"""Most drive periods; damping ratio of the exciter, assumed."""
+CYCLES, SUSPENSION_RATIO = 8000, 0.1  # most drive periods; damping ratio of the exciter, assumed
 
-Of = Callable[[float], Any]
-"""Drive frequency [Hz] to an oscillator or to a strobed map."""
+Of = Callable[[float], Any]  # drive frequency [Hz] to an oscillator or to a strobed map
 
 
 def cubic(scene: Scene, width: float = 0.0) -> Backbone:

@@ -5,8 +5,6 @@ A change of the spring adapts the thickness of the sheet, which keeps T; decay r
 stay.  The fold after a change is that of the p_m that is born without it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Annotated

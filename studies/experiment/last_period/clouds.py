@@ -1,4 +1,4 @@
-"""Clouds of strobe points in noise of the drive: which p_m can be told apart, and which is still there.
+"""Clouds of strobe points in noise of the drive: which p_m can be distinguished, and which is still there.
 
 At an excess of 1e-3 the m strobe points of p_m become m clouds, sorted by the strobes since the last impact.
 Over `WAITS` waitings neighbouring clouds are separate if they are further apart than wide (90 % of the
@@ -6,8 +6,6 @@ points).  In one record of the 40 strobes that the letter draws they are separat
 drift moves all points of a record together.  p_m is held if it is seen one standard deviation of the
 amplitude above grazing.
 """
-
-from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
@@ -23,8 +21,7 @@ from studies.letter import SETTLE_CYCLES, STROBE_POINTS
 from studies.physics.drive_noise import DriveNoise, watched
 from studies.shell.scene import READOUT, Scene, band_of
 
-BORN_EXCESS = 1e-3
-"""Excess of the orbit in noise."""
+BORN_EXCESS = 1e-3  # excess of the orbit in noise
 
 SHARE_OF_BAND = 0.15
 """Distance of the frequency from the upper edge of the band of p_m over its width: the letter's mean."""
@@ -32,8 +29,7 @@ SHARE_OF_BAND = 0.15
 WAITS, WAITING = 10, SETTLE_CYCLES
 """Waitings for which the orbit is followed, one after the other, and their drive periods."""
 
-FEWEST = 10
-"""Least number of points of a cloud."""
+FEWEST = 10  # least number of points of a cloud
 
 SEED = 1996
 

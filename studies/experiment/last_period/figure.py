@@ -1,7 +1,5 @@
 """Folds after each change."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 
@@ -20,8 +18,7 @@ TORNADO = (
 )
 WAYS = {-1: ("lowered", BLUE, 0.2), 1: ("raised", plotting.tint(VERMILION, 0.6), -0.2)}
 """Direction of a change -> its name, colour and place of its bar."""
-LEFT, RIGHT = 0.22, 4.5
-"""Where the axis of the factors ends."""
+LEFT, RIGHT = 0.22, 4.5  # where the axis of the factors ends
 
 
 @plotting.in_house_style

@@ -6,8 +6,6 @@ Where that holds on several stretches of T the longest counts.  At an excess of 
 other motions, the stretch has gaps that a finer grid would find.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -24,8 +22,7 @@ from studies.physics.parameters import with_values
 FREQUENCY_ERROR_HZ, CYCLES, GRID, HALVINGS = 0.005, 8000, 121, 14
 """Half the last digit of f; most drive periods to settle; places of a grid; halvings at a stretch's ends."""
 
-EXCESSES = 0.0, AMPLITUDE_STABILITY, 1e-3, 4e-3, 1e-2
-"""Of Eq. (1); 0 is the map."""
+EXCESSES = 0.0, AMPLITUDE_STABILITY, 1e-3, 4e-3, 1e-2  # of Eq. (1); 0 is the map
 PRINTED_S = FREE_PERIOD_S - FREE_PERIOD_ERROR_S, FREE_PERIOD_S, FREE_PERIOD_S + FREE_PERIOD_ERROR_S
 
 
@@ -74,8 +71,8 @@ def intervals_of(single: ImpactOscillator, excess: float) -> list[Interval]:
     ends = dict[int, tuple[float, float]]()
     for f, m in PERIODS.items():
         low, high = (2.0 * k / ((2.0 * k + 1.0) * f) for k in (m - 1, m))  # upper edges of two bands
-        room = high - low
-        ends[m] = longest(partial(is_born, single, excess, f), low - 0.3 * room, high + 1.2 * room)
+        width = high - low
+        ends[m] = longest(partial(is_born, single, excess, f), low - 0.3 * width, high + 1.2 * width)
 
     def shared(words: str, periods: Sequence[int], error: float = 0.0) -> Interval:
         known = [(*ends[m], m, error / f) for f, m in PERIODS.items() if m in periods]

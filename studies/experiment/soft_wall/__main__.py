@@ -21,8 +21,6 @@ Run:     python -m studies soft_wall [--decades 1 6] [--quick]
 Writes:  kicks.csv, doublings.csv; figure kick
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from functools import partial
 from itertools import pairwise
@@ -38,12 +36,11 @@ from studies.shell.options import Within
 from studies.shell.scene import Scene, SceneError, harmonic, single_mode_at
 from studies.shell.study import Run, study
 
-SHOWN_HZ = 22.2
+SHOWN_HZ = letter.TRANSITION_HZ[5]
 """Frequency of the curves and of the beam, or the one of the scene nearest to it."""
 
-QUICK_HZ = (22.2, 22.6)
-UNSEEN = 1e-9
-"""A loss of stability below this excess counts as one at grazing, as at a hard wall."""
+QUICK_HZ = (SHOWN_HZ, letter.TRANSITION_HZ[6])
+UNSEEN = 1e-9  # a loss of stability below this excess counts as one at grazing, as at a hard wall
 
 
 @study(needs={"kick": 0.005}, quick={"decades": (3, 5)})

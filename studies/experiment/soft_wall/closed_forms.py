@@ -31,8 +31,6 @@ dJ/dh = 2 s z/(1 + z^2), hence with Lambda = 1/S_+
 and no doubling near grazing if s < Lambda. As K grows, h_f goes like K^(-2).
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property

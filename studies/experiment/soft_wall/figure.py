@@ -1,7 +1,5 @@
 """Kick of a collision at a soft wall, and of the beam."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A wall or the beam near grazing: kick of a collision, period doubling of p1, loss of its stability."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -21,8 +19,7 @@ SPAN = 3.0
 
 CERTAIN, UNDECIDED = "period doubling", "undecided"  # events of a branch
 
-RATIO = 1.05
-"""Ratio of two excesses between which a local power is taken."""
+RATIO = 1.05  # ratio of two excesses between which a local power is taken
 
 
 @dataclass(frozen=True, kw_only=True)

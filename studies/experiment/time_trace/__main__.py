@@ -1,4 +1,4 @@
-"""Fig. 4 of the letter: a settled orbit in time, and its spectrum.
+"""Fig. 4 of the letter: a settled orbit in time, its spectrum, its film.
 
 Claim (letter 1996, Fig. 4): at F/F_g - 1 = 0.013 the orbit has period 4, and at impact "a multitude of
 high-order modes is excited in the beam".
@@ -22,8 +22,6 @@ Writes:  time_trace.npz, collisions.csv or impacts.csv, spectrum.npz, peaks.csv,
          with --film motion.gif, motion.mp4 (extra `video`) and motion.pvd for ParaView
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from typing import Annotated, Any
@@ -45,13 +43,11 @@ from studies.shell.scene import Scene, beam_at, model_of, own_frequency, require
 from studies.shell.study import Run, study
 
 NEEDS = {"tip_trace": 2e-3, "kick": 0.005, "restitution": 0.01}
-ORBIT_PERIODS = 2
-"""Periods of the orbit in the figure."""
+ORBIT_PERIODS = 2  # periods of the orbit in the figure
 
-APERIODIC = 8
-"""Drive periods shown of a motion that has no period."""
+APERIODIC = 8  # drive periods shown of a motion that has no period
 
-TOLD = "first_touch approach restitution delay kick impacts contact_time peak_force ringing".split()
+SHOWN = "first_touch approach restitution delay kick impacts contact_time peak_force ringing".split()
 """Columns of a collision that are shown to a person."""
 
 
@@ -96,7 +92,7 @@ def time_trace(
         run.table("impacts", trace.impacts, "Impacts in the stretch of the figure.", of=computed.Touch)
     else:
         collided = "Collisions in the stretch of the figure; one may hold several impacts."
-        run.table("collisions", trace.collisions, collided, of=Collision, show=TOLD, words=WORDS)
+        run.table("collisions", trace.collisions, collided, of=Collision, show=SHOWN, words=WORDS)
     holds = f"Lines of the spectrum: frequency_hz [Hz] and amplitude_{unit} of the read-out [{unit}]."
     run.arrays("spectrum", holds, frequency_hz=lines_hz, **{f"amplitude_{unit}": amplitude})
     peaked = {"amplitude": f"amplitude of the read-out [{unit}]"}
@@ -119,7 +115,7 @@ def time_trace(
     size_g = amplitude_m * oscillator.driven.angular_frequency**2 / g
     run.say(f"{drive_hz:g} Hz, excess {excess:g}, base {1e3 * amplitude_m:.4g} mm, {size_g:.3g} g: {name}")
     higher = sorted({peak.mode for peak in peaks if peak.mode is not None and peak.mode > 1})
-    tell(run, settled.period, impacts, trace.collisions, higher)
+    findings(run, settled.period, impacts, trace.collisions, higher)
     if scene.stops:
         run.finding("The spring has several stops: impacts are listed instead of collisions.")
     filmed = dict[str, object]()
@@ -148,15 +144,13 @@ def time_trace(
 
 def repeats(period: int) -> str:
     """When the motion repeats."""
+    if not period:
+        return "the motion has no period up to 64 drive periods"
     whole = "each drive period" if period == 1 else f"{period} drive periods"
-    return (
-        f"the settled motion repeats after {whole}"
-        if period
-        else "the motion has no period up to 64 drive periods"
-    )
+    return f"the settled motion repeats after {whole}"
 
 
-def tell(run: Run, period: int, impacts: int, found: Sequence[Collision], higher: Sequence[int]) -> None:
+def findings(run: Run, period: int, impacts: int, found: Sequence[Collision], higher: Sequence[int]) -> None:
     """The findings."""
     touches = ("" if impacts else " and never touches the plate") if impacts != 1 else ", with one impact"
     run.finding(f"{repeats(period).capitalize()}{touches}.")
@@ -172,10 +166,10 @@ def judge(run: Run, period: str, seen: int, found: Sequence[Collision], higher: 
     """Verdicts on Fig. 4."""
     run.verdict("time_trace", "agrees" if period == f"p{seen}" else "differs", found=period)
     verdict: Verdict = "agrees" if len(higher) > 2 else "in part" if higher else "differs"
-    told = f"modes {', '.join(map(str, higher))} have" if higher else "no mode above the first has"
-    run.verdict("many_modes", verdict, found=f"{told} a peak in the spectrum", figure="spectrum")
+    said = f"modes {', '.join(map(str, higher))} have" if higher else "no mode above the first has"
+    run.verdict("many_modes", verdict, found=f"{said} a peak in the spectrum", figure="spectrum")
     if found and math.isfinite(found[0].restitution):
         near = abs(found[0].restitution - letter.RESTITUTION) <= 0.5 * letter.RESTITUTION
         note = f"Time delay {written(1e3 * found[0].delay)} ms, kick {written(found[0].kick)}."
-        verdict, told = "agrees" if near else "differs", written(found[0].restitution, 3)
-        run.verdict("restitution_on_orbit", verdict, found=told, note=note)
+        verdict, said = "agrees" if near else "differs", written(found[0].restitution, 3)
+        run.verdict("restitution_on_orbit", verdict, found=said, note=note)

@@ -1,7 +1,5 @@
 """The figures of a settled orbit: motion in time with one collision from close by, and the spectrum."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np
@@ -15,15 +13,12 @@ from studies.shell import plotting
 
 Array = NDArray[np.float64]
 
-APART = 8.0
-"""Least distance of two modes that are both numbered [pt]."""
+APART = 8.0  # least distance of two modes that are both numbered [pt]
 
-MOST_DRAWN = 4_000
-"""Points of a line: more than a page has dots."""
+MOST_DRAWN = 4_000  # points of a line: more than a page has dots
 
 MARK = {"color": plotting.VERMILION, "linewidth": 0.6, "linestyle": ":", "zorder": 1}
-OF_STOPS = plotting.PALETTE[2:]
-"""Colours of the marks of impacts, by the number of the stop."""
+OF_STOPS = plotting.PALETTE[2:]  # colours of the marks of impacts, by the number of the stop
 
 
 @plotting.in_house_style
@@ -41,10 +36,8 @@ def draw_trace(trace: Trace, near: CloseUp | None, stops: Sequence[Stop], unit: 
         axis.plot(1e3 * trace.time[::step], 1e3 * shown[::step], **motion)
         axis.margins(x=0.0)
         for at, touch in zip(1e3 * trace.impact_times, trace.impacts, strict=True):
-            where, colour = (
-                f" on plate {touch.stop}" if len(stops) > 1 else "",
-                OF_STOPS[touch.stop % len(OF_STOPS)],
-            )
+            where = f" on plate {touch.stop}" if len(stops) > 1 else ""
+            colour = OF_STOPS[touch.stop % len(OF_STOPS)]
             axis.axvline(at, **{**MARK, "color": colour}, label=f"impact{where}")
         plotting.panel(axis, number, (f"ball: {title}", "read-out point")[number])
     plotting.label(tip.yaxis, "ball", "mm")

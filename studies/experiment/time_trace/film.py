@@ -39,11 +39,9 @@ from studies.shell.painter import DRIVE, TOUCHED, WIDTH, Moment, Picture, Scener
 from studies.shell.scene import Scene, modes_of
 from studies.shell.study import Run
 
-CUE = 2.0
-"""Times slower than the flight, from where on the film says so in words."""
+CUE = 2.0  # times slower than the flight, from where on the film says so in words
 
-DOTS = 110
-"""Points an inch of the strip below the spring."""
+DOTS = 110  # points an inch of the strip below the spring
 
 
 def film(
@@ -129,13 +127,11 @@ def strip(orbit: FilmedOrbit, trace: Trace, gaps: Sequence[float]) -> Below:
 Array = NDArray[np.float64]
 
 NEARER, IN_CONTACT = 8.0, 6.0
-FLIGHT_STEPS = 120.0
-"""Steps of the flight in a whole film, were there no contacts."""
+FLIGHT_STEPS = 120.0  # steps of the flight in a whole film, were there no contacts
 
-APERIODIC = 4
-"""Drive periods shown of a motion that has no period."""
+APERIODIC = 4  # drive periods shown of a motion that has no period
 
-ROOM, MOST = 0.07, 100.0
+LARGEST, MOST = 0.07, 100.0
 """Largest enlarged departure over the greatest extent of the strip; enlargement beyond which nothing is
 seen."""
 
@@ -149,8 +145,7 @@ class FilmedOrbit:
     """
 
     duration: float
-    contacts: list[tuple[float, float]]
-    """Begin and end of each [s]."""
+    contacts: list[tuple[float, float]]  # begin and end of each [s]
     time: Array
     slowed: Array
     tip: Array
@@ -206,9 +201,9 @@ def drawn_shapes(
 ) -> tuple[Array, float]:
     """Displacements of the points of the mesh relative to the base (n_frames, n_points, 3) [m], and M [1].
 
-    `coordinates` (n_frames, n_modes) are those of the coupled modes.
+    `coordinates` (n_frames, n_modes) belong to the coupled modes.
 
-    M is the largest whole number with which the departures stay below `ROOM`, unless it is given.
+    M is the largest whole number with which the departures stay below `LARGEST`, unless it is given.
     """
     kept = np.flatnonzero(modes.coupled)[: coordinates.shape[1]]
     phi, strip = modes.phi[kept], np.unique(mesh.hexahedra)
@@ -221,6 +216,6 @@ def drawn_shapes(
     carried[:, ball] = ((coordinates @ phi)[:, None] * drive)[:, None]
     if magnification is None:
         largest = float(np.linalg.norm(departures[:, strip], axis=2).max())
-        room = ROOM * float(np.ptp(mesh.points[strip], axis=0).max())
-        magnification = min(MOST, max(1.0, math.floor(room / largest))) if largest > 0.0 else 1.0
+        bound = LARGEST * float(np.ptp(mesh.points[strip], axis=0).max())
+        magnification = min(MOST, max(1.0, math.floor(bound / largest))) if largest > 0.0 else 1.0
     return carried + magnification * departures, magnification

@@ -3,7 +3,7 @@
     N = k d + c d'  (linear),   N = k d^(3/2) (1 + chi d')  (Hertz: chi = 0),   at depth d [m], rate d' [m/s]
 
 A law of restitution has no force: not a number. Between several stops the touches are listed instead of
-collisions, which are those of one stop.
+collisions, which are defined for one stop.
 
 The spectrum: a signal of period P, sampled over a whole number of periods, is a sum of lines at the multiples
 of 1/P,
@@ -87,7 +87,7 @@ class Trace:
 
 @dataclass(frozen=True, kw_only=True)
 class Touch:
-    """An impact on one of the stops; the fields are those of `contact.Impacts`."""
+    """An impact on one of the stops; the fields are as in `contact.Impacts`."""
 
     stop: Annotated[int, "number of the stop; 0 is that of [stop]"]
     start: Annotated[float, "time of the touch [s]"]
@@ -204,7 +204,7 @@ def contact_force(oscillator: ImpactOscillator, run: Trajectory) -> Array:
 
 
 CLEAR, LOUD = 1e-3, 1e-7
-"""Least part of the largest line at which a peak away from the modes, and one at a mode, is told."""
+"""Least part of the largest line at which a peak away from the modes, and one at a mode, is listed."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,1 +1,1 @@
-"""The main job: the letter's transitions in four descriptions, their orbit diagrams and figures."""
+"""The main job: the letter's transitions in four descriptions, and their orbit diagrams: Fig. 2."""

@@ -17,14 +17,12 @@ Writes:  transitions.csv (a row a frequency and description), two_parameters.csv
          read-out point), orbit_diagram_two_parameters, orbit_diagram_single_mode, orbit_diagram_map
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import Annotated
 
 from studies.experiment.transitions.model import AtFrequency, Scans, Transition, rows_at, scans
-from studies.letter import FREE_PERIOD_S
+from studies.letter import FREE_PERIOD_S, TRANSITION_HZ
 from studies.physics.descriptions import TITLES, StrobePoint, strobe_points_of, word, words
 from studies.physics.two_parameters import Extracted
 from studies.shell.digits import written
@@ -32,11 +30,9 @@ from studies.shell.run import Verdict
 from studies.shell.scene import Scene, harmonic, model_of
 from studies.shell.study import Run, study
 
-QUICK_POINTS = 21
-"""Amplitudes of a scan in the small form, at most."""
+QUICK_POINTS = 21  # amplitudes of a scan in the small form, at most
 
-NEARLY = 1.25
-"""Factor within which two ends of an orbit count as one."""
+NEARLY = 1.25  # factor within which two ends of an orbit count as one
 
 AT_THE_EDGE = (
     "the edge between p10 and p11 lies at 23.343 Hz, where f T = 20/21: p10 at grazing needs T below 40.70 ms"
@@ -83,7 +79,7 @@ def transitions(
         run.figure(stem, drawn, f"{caption}: {TITLES[name]}.")
     if (other := ends_beside_folds(rows)) and run.model_choice:
         run.warn(f"{other}: modes were chosen for folds, and more of them (modes.count) can move this end")
-    tell(run, rows)
+    findings(run, rows)
     compare(run, rows, parameters)
     seen = [at.rows for at in found if at.rows[0].letter is not None]
     agrees = [of_frequency[0].frequency_hz for of_frequency in seen if judge(run, of_frequency)]
@@ -108,7 +104,7 @@ def in_words(rows: Sequence[Transition]) -> str:
     return words({row.description: row.period for row in rows})
 
 
-def tell(run: Run, rows: Sequence[Transition]) -> None:
+def findings(run: Run, rows: Sequence[Transition]) -> None:
     """The findings on the beam: its born periods, and the deepest of its orbits below grazing."""
     beams = [row for row in rows if row.description == "beam" and row.period is not None]
     ours = {row.frequency_hz: row.period for row in beams}
@@ -132,7 +128,11 @@ def judge(run: Run, rows: Sequence[Transition]) -> bool:
     same, first = [row.period == row.letter for row in rows], rows[0]
     above = {row.description: row.born.get("0.01") for row in rows}
     note = "" if all(same) else f"at excess 0.01: {words(above)}"
-    if note and first.frequency_hz == 23.40 and run.scene.single_mode.free_period_s == FREE_PERIOD_S:
+    if (
+        note
+        and first.frequency_hz == TRANSITION_HZ[10]
+        and run.scene.single_mode.free_period_s == FREE_PERIOD_S
+    ):
         note += f"; {AT_THE_EDGE}"
     verdict: Verdict = "agrees" if all(same) else "in part" if any(same) else "differs"
     run.verdict(f"p{first.letter}", verdict, found=in_words(rows), note=note)
@@ -152,10 +152,8 @@ def compare(run: Run, rows: Sequence[Transition], parameters: Sequence[Extracted
     close = sum(bool(a and b and 1.0 / NEARLY < a / b < NEARLY) for a, b in ends)
     of_map = sum(one.map == beams[one.frequency_hz].period for one in found)
     if same:
-        where, missed = (
-            "every frequency" if len(same) == len(found) else "some frequencies",
-            len(found) - close,
-        )
+        missed = len(found) - close
+        where = "every frequency" if len(same) == len(found) else "some frequencies"
         end = f"; its orbits end elsewhere at {missed} of them" if missed else ""
         words = "Eq. (1) with the beam's restitution and time delay has the beam's period at"
         run.finding(f"{words} {where}{end}.")

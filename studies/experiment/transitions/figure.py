@@ -1,7 +1,5 @@
 """Orbit diagrams of the transitions, as in the letter's Fig. 2."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from typing import Any

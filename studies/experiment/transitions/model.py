@@ -1,7 +1,5 @@
 """One transition p1 <-> p_m in each description: born period, end on the way down, orbit diagram."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Annotated
@@ -24,7 +22,7 @@ from studies.physics.descriptions import (
 from studies.physics.two_parameters import Extracted, extracted
 from studies.shell.scene import Scene, beam_at, of_the_letter, single_mode_at
 
-OTHER_EXCESSES = (2.5e-4, 1e-2)
+OTHER_EXCESSES = (letter.AMPLITUDE_STABILITY, 1e-2)
 """Where the born period is given as well: the letter's amplitude stability, and well above grazing."""
 
 

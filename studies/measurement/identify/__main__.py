@@ -55,6 +55,7 @@ from typing import Annotated
 
 from beam import InvalidValue, Refusal
 from contact import ImpactOscillator
+from studies import letter
 from studies.measurement.identify.fit.result import Fit
 from studies.measurement.identify.fit.search import fit as fitted
 from studies.measurement.identify.motion.displacement import SENSOR
@@ -82,7 +83,7 @@ EXAMPLES: Mapping[Kind, Description] = {
     "displacement": "two_parameters",
     "transitions": "one_mode",
 }
-FREQUENCY_HZ, SEED = 22.20, 1996  # of the example: the letter's p5
+FREQUENCY_HZ, SEED = letter.TRANSITION_HZ[5], 1996  # of the example
 
 
 def frequency_of(record: Record, scene: Scene) -> float:

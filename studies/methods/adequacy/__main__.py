@@ -18,8 +18,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from studies.methods.adequacy.models import EQ_1, Models
-from studies.methods.adequacy.search import LeastModel, Search
+from studies.methods.adequacy.model import EQ_1, LeastModel, Models, Search
 from studies.physics.least_model import middle_of
 from studies.shell.scene import Scene, harmonic
 from studies.shell.study import Run, study
@@ -66,11 +65,11 @@ def sentences(rows: Sequence[LeastModel]) -> Iterator[str]:
 def questions(scene: Scene, quick: bool) -> list[tuple[str, float]]:
     """Quantities and drive frequencies [Hz]."""
     middle, drives = middle_of(scene), sorted(scene.drive.frequencies_hz)
-    asked = [(f"frequency {number}", middle) for number in ((1, 3) if quick else (1, 3, 5, 10))]
-    asked += [(name, middle) for name in ("restitution", "delay", "kick")]
-    asked += [("born_period", f) for f in ([middle] if quick else drives)]
-    asked += [("fold", f) for f in ([middle] if quick else drives[:3])]
-    return asked if quick else [*asked, ("tip_trace", middle)]
+    found = [(f"frequency {number}", middle) for number in ((1, 3) if quick else (1, 3, 5, 10))]
+    found += [(name, middle) for name in ("restitution", "delay", "kick")]
+    found += [("born_period", f) for f in ([middle] if quick else drives)]
+    found += [("fold", f) for f in ([middle] if quick else drives[:3])]
+    return found if quick else [*found, ("tip_trace", middle)]
 
 
 def draw(rows: Sequence[LeastModel]) -> Figure:
@@ -89,10 +88,8 @@ def draw(rows: Sequence[LeastModel]) -> Figure:
                 if over > widest:
                     look |= {"marker": ">", "color": "0.4", "label": "beyond the axis"}
                 axis.plot(min(over, widest), place, **look)
-            across, words = (
-                axis.get_yaxis_transform(),
-                row.least.removeprefix("beam, ").removesuffix(" contact"),
-            )
+            across = axis.get_yaxis_transform()
+            words = row.least.removeprefix("beam, ").removesuffix(" contact")
             beside = {"va": "center", "fontsize": plotting.NOTE}
             axis.annotate(words, (1.0, place), (10.0, 0.0), across, "offset points", **beside)
         axis.set_title("least model, contact law", x=1.12, loc="left")

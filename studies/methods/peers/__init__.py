@@ -9,14 +9,15 @@ sundials   CVODE by scikit-sundae: Adams-Moulton up to order 12 or BDF up to ord
            the exact Jacobian, with root finding; a restart begins at order 1
 
 They integrate from one touch or release to the next, which their own root finding has to notice, and are
-started anew there (``studies.methods.peers.piecewise``). Nothing is shared with the exact methods but the
-parameters. Dashpots, constant loads and other laws are refused; a tip that comes to rest on the stop ends in
+started anew there. Nothing is shared with the exact methods but the
+parameters. Dashpots, constant loads and other laws are refused; a tip that rests on the stop ends in
 an error.
 
 No library is imported before a run needs it.
-"""
 
-from __future__ import annotations
+`piecewise`   the equations of a flight and of a contact, and the motion from one event to the next
+`adapters`    SciPy, heyoka and CVODE, each from one event to the next
+"""
 
 import math
 from collections.abc import Callable
@@ -80,5 +81,5 @@ class OutsideSolver(Integrator):
             raise ImportError(needs(f"{module} is not installed: {self.solver}", "heyoka scikit-sundae"))
 
     def follow(self, oscillator: ImpactOscillator, run: Run) -> Trajectory:
-        """The motion of `run`; evaluations are those of the right-hand side, heyoka's its Taylor steps."""
+        """The motion of `run`; evaluations are of the right-hand side, heyoka's its Taylor steps."""
         return pieced(oscillator, run, self.tolerance, SOLVERS[self.solver][1])

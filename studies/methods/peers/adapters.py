@@ -12,8 +12,6 @@ Touch and release are regular points; a wanted time within a contact is an event
 kind of equation and tolerance, in each thread, with all physical numbers as run-time parameters.
 """
 
-from __future__ import annotations
-
 import math
 import threading
 from typing import Any
@@ -25,8 +23,9 @@ from studies.methods.peers.piecewise import Advance, Array, Equations, Piece
 MOST_STEPS = 1_000_000
 """Bound of the steps of one piece, far beyond what a drive period takes at any tolerance."""
 
-FAR = 1e30
-"""End of a piece in sigma, never reached: an event ends it [s m^-1/2]."""
+FAR = 1e30  # end of a piece in sigma, never reached: an event ends it [s m^-1/2]
+
+Heyoka = Any  # an expression or integrator of heyoka, which has no types
 
 _kept = threading.local()
 
@@ -118,7 +117,7 @@ def heyoka_pieces(e: Equations) -> Advance:
 
     numbers = np.concatenate([e.modes.ravel(), e.scalars, [e.rounding, 0.0]])
 
-    def made(contact: bool) -> Any:
+    def made(contact: bool) -> Heyoka:
         kept = _kept.__dict__.setdefault("integrators", {})
         kind = (e.n, contact, contact and e.hertz, e.tolerance)
         if kind not in kept:
@@ -156,27 +155,45 @@ def heyoka_pieces(e: Equations) -> Advance:
     return advance
 
 
-def _compiled(n: int, contact: bool, sigma: bool, tolerance: float) -> Any:
-    """heyoka's integrator for a flight, a linear contact, or a Hertz contact in sigma."""
+def heyoka_equations(
+    modes: list[Heyoka], scalars: list[Heyoka], contact: bool = False, sigma: bool = False
+) -> tuple[list[Heyoka], Heyoka]:
+    """The equations of a flight, a linear contact, or a Hertz contact in sigma, and the penetration [m].
+
+    `modes` and `scalars`, as in `rates` of ``piecewise``, are numbers, or parameters at run time.  The last
+    two equations in sigma are of s and t.
+    """
     import heyoka as hy
 
-    q, v = ([hy.expression(f"{name}_{k:03d}") for k in range(n)] for name in "qv")
+    (stiffness, decay, phi, push), (frequency, phase, gap, number) = modes, scalars
+    every = range(len(phi))
+    q, v = ([hy.expression(f"{name}_{k:03d}") for k in every] for name in "qv")
     s, clock = hy.make_vars("s", "t")
-    stiffness, decay, phi, push = ([hy.par[i * n + k] for k in range(n)] for i in range(4))
-    frequency, phase, gap, number, rounding, target = (hy.par[4 * n + i] for i in range(6))
-    swing = hy.sin(frequency * (clock if sigma else hy.time) + phase)
-    depth = hy.sum([phi[k] * q[k] for k in range(n)]) - gap
+    shake = hy.sin(frequency * (clock if sigma else hy.time) + phase)
+    depth = hy.sum([phi[k] * q[k] for k in every]) - gap
     force = number * s * s * s if sigma else number * depth
     stretch = s if sigma else 1.0
     pulls = [
-        [push[k] * swing, -decay[k] * v[k], -stiffness[k] * q[k], *([-phi[k] * force] if contact else [])]
-        for k in range(n)
+        [push[k] * shake, -decay[k] * v[k], -stiffness[k] * q[k], *([-phi[k] * force] if contact else [])]
+        for k in every
     ]
-    system = [(q[k], stretch * v[k]) for k in range(n)]
-    system += [(v[k], stretch * hy.sum(pulls[k])) for k in range(n)]
+    system = [(q[k], stretch * v[k]) for k in every]
+    system += [(v[k], stretch * hy.sum(pulls[k])) for k in every]
+    if sigma:
+        system += [(s, 0.5 * hy.sum([phi[k] * v[k] for k in every])), (clock, s)]
+    return system, depth
+
+
+def _compiled(n: int, contact: bool, sigma: bool, tolerance: float) -> Heyoka:
+    """heyoka's integrator for a flight, a linear contact, or a Hertz contact in sigma."""
+    import heyoka as hy
+
+    *scalars, rounding, target = (hy.par[4 * n + i] for i in range(6))
+    modes = [[hy.par[i * n + k] for k in range(n)] for i in range(4)]
+    system, depth = heyoka_equations(modes, scalars, contact, sigma)
     rising, falling = hy.event_direction.positive, hy.event_direction.negative
     if sigma:
-        system += [(s, 0.5 * hy.sum([phi[k] * v[k] for k in range(n)])), (clock, s)]
+        (s, _), (clock, _) = system[-2:]
         watched = [(s, falling), (clock - target, rising)]
     else:
         watched = [(depth, falling)] if contact else [(depth - rounding, rising)]

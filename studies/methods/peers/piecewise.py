@@ -8,13 +8,11 @@
 
 In contact N is not cut off for d < 0 (Hertz's is continued by zero), so that the right-hand side is smooth
 past the release, within the step that finds it. What is watched rises through zero: d less a bound of its
-rounding in flight, -d in contact. Absolute tolerances are those of one energy: with V the largest of |q'|,
-|omega q| over the start, the steady motion and a swing that reaches the stop, velocities get tolerance V,
+rounding in flight, -d in contact. Absolute tolerances follow from one energy: with V the largest of |q'|,
+|omega q| over the start, the steady motion and a motion that reaches the stop, velocities get tolerance V,
 displacements tolerance V/omega_k. The right-hand side is compiled; in numpy it would make SciPy and CVODE a
 third slower.
 """
-
-from __future__ import annotations
 
 import math
 from collections.abc import Callable
@@ -40,8 +38,7 @@ from contact.integrators import Run
 
 EPS = 2.220446049250313e-16
 
-FLIGHT, LINEAR, HERTZ = 0, 1, 2
-"""What a piece is, for the kernel."""
+FLIGHT, LINEAR, HERTZ = 0, 1, 2  # what a piece is, for the kernel
 
 MOST_IMPACTS = 2000
 """Bound of impacts in one period: with so many the tip is on its way to rest, which is not followed, or the
@@ -79,14 +76,23 @@ def penetration(y: Array, modes: Array, scalars: Array) -> float:
 def rates(t: float, y: Array, out: Array, modes: Array, scalars: Array, kind: int) -> None:
     """Fill `out` with dy/dt; `modes` (4, n): omega^2, c, phi, P; `scalars`: w, phase, gap, k."""
     n = modes.shape[1]
-    depth, force, swing = penetration(y, modes, scalars), 0.0, math.sin(scalars[0] * t + scalars[1])
+    depth, force, shake = penetration(y, modes, scalars), 0.0, math.sin(scalars[0] * t + scalars[1])
     if kind == LINEAR:
         force = scalars[3] * depth
     elif kind == HERTZ and depth > 0.0:
         force = scalars[3] * depth * math.sqrt(depth)
     for k in range(n):
         out[k] = y[n + k]
-        out[n + k] = modes[3, k] * swing - modes[1, k] * y[n + k] - modes[0, k] * y[k] - modes[2, k] * force
+        out[n + k] = modes[3, k] * shake - modes[1, k] * y[n + k] - modes[0, k] * y[k] - modes[2, k] * force
+
+
+def numbers_of(oscillator: ImpactOscillator, clock: float = 0.0) -> tuple[Array, Array]:
+    """`modes` and `scalars` of `rates`; times count from the drive time `clock` [s]."""
+    model, drive, stop = oscillator.model, oscillator.drive, oscillator.stop
+    amplitude, w = (0.0, 0.0) if drive is None else (drive.amplitude, drive.angular_frequency)
+    push = model.participation * amplitude * w**2
+    modes = np.ascontiguousarray([model.omega**2, model.decay_rate, model.phi, push])
+    return modes, np.array([w, w * clock, stop.gap, stop.law.numbers[0]])
 
 
 class Equations:
@@ -104,12 +110,10 @@ class Equations:
         self.oscillator, self.start, self.tolerance = oscillator, run.start, tolerance
         self.n, self.phi = oscillator.n_modes, model.phi
         self.compliance, self.number = float(model.phi @ model.phi), law.numbers[0]
-        amplitude, w = (0.0, 0.0) if drive is None else (drive.amplitude, drive.angular_frequency)
-        push = model.participation * amplitude * w**2
-        self.modes = np.ascontiguousarray([model.omega**2, model.decay_rate, model.phi, push])
-        self.scalars = np.array([w, w * run.clock, oscillator.stop.gap, self.number])
+        self.modes, self.scalars = numbers_of(oscillator, run.clock)
+        w, amplitude = float(self.scalars[0]), 0.0 if drive is None else drive.amplitude
         lowest = w if w > 0.0 else 2.0 * math.pi / oscillator.period
-        pace = np.maximum(model.omega, lowest)
+        omega = np.maximum(model.omega, lowest)
         vectors = (
             run.start.velocity,
             model.omega * run.start.displacement,
@@ -117,8 +121,8 @@ class Equations:
         )
         reach = lowest * oscillator.stop.gap / math.sqrt(self.compliance)
         speed = max(reach, *(float(np.linalg.norm(vector)) for vector in vectors)) or 1.0
-        self.absolute = tolerance * np.concatenate([speed / pace, np.full(self.n, speed)])
-        self.rounding = 32.0 * EPS * (oscillator.stop.gap + float(np.abs(model.phi) @ (speed / pace)))
+        self.absolute = tolerance * np.concatenate([speed / omega, np.full(self.n, speed)])
+        self.rounding = 32.0 * EPS * (oscillator.stop.gap + float(np.abs(model.phi) @ (speed / omega)))
 
     def tip(self, y: Array) -> tuple[float, float]:
         """Penetration [m] and its rate [m/s]."""

@@ -1,8 +1,7 @@
 """Where each numerical method fails: theory beside measurement.
 
 Claim: a method for impacts fails by its step, by what it does to the energy of a contact, by a touch that it
-does not see, or by impacts that accumulate, and each of these failures lies where theory puts it. Six
-families, each derived at the head of its file:
+does not see, or by impacts that accumulate, and each of these failures lies where theory puts it:
 
     explicit             central difference: limits of the step; energy made in short contacts within them
     splitting            the stiffest contact that kick-flight-kick bears, and resonances beyond h omega = pi
@@ -15,15 +14,13 @@ Run:     python -m studies stability [--families explicit,splitting] [--quick]
 Writes:  limits.csv (all rows); for three families NAME.npz (arrays of its figure) and NAME.png
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 from typing import Annotated
 
 from beam import InvalidValue
-from studies.methods.stability import FAMILIES, Limit, family, findings
+from studies.methods.stability.model import FAMILIES, Limit, family, findings
 from studies.shell.digits import written
 from studies.shell.run import MOST_FINDINGS
 from studies.shell.scene import Scene

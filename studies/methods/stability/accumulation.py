@@ -12,8 +12,6 @@ through the floor.
 Number to compare with: h = 1 m, g = 9.81 m/s^2, e = 0.7 gives t_inf = 2.55863 s.
 """
 
-from __future__ import annotations
-
 import math
 from functools import partial
 
@@ -22,12 +20,11 @@ from scipy.integrate import solve_ivp
 
 from beam import ModalModel
 from contact import ImpactKind, ImpactOscillator, NewtonRestitution, Stop, simulate
-from studies.methods.stability import Findings, Limit
+from studies.methods.stability.model import Findings, Limit
 from studies.shell.scene import Scene
 
 HEIGHT, GRAVITY = 1.0, 9.81
-MOST_EVENTS = 1000
-"""Bound of the events of the loop: three times what e = 0.9 needs to fall through."""
+MOST_EVENTS = 1000  # bound of the events of the loop: three times what e = 0.9 needs to fall through
 TOLERANCES = (1e-12, 1e-6)
 
 entry = partial(Limit, family="accumulation")

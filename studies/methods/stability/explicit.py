@@ -16,8 +16,6 @@ may make any energy as x -> 2. If it takes a whole number n of steps, x = 2 sin(
 no step is wrong in its energy: a test of convergence with commensurate steps shows none of the error.
 """
 
-from __future__ import annotations
-
 import math
 from functools import partial
 
@@ -25,13 +23,10 @@ import numpy as np
 
 from beam import ModalModel
 from contact.integrators import CentralDifference
-from studies.methods.stability import Findings, Limit
-from studies.methods.stability.free_mass import energy_after
-from studies.methods.stability.lasting_contact import limit, stiffest
+from studies.methods.stability.model import Findings, Limit, energy_after, limit, stiffest
 from studies.shell.scene import Scene, model_of
 
-SOFT = 1e-12
-"""Stiffness of a stop that a mode of 1 rad/s, 1 kg^-0.5 does not feel: it is in flight [N/m]."""
+SOFT = 1e-12  # stiffness of a stop that a mode of 1 rad/s, 1 kg^-0.5 does not feel: it is in flight [N/m]
 
 entry = partial(Limit, family="explicit")
 

@@ -14,8 +14,6 @@ table is the exact collision. What the methods for Newton's law make of a step i
 `studies.methods.work_precision`.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from functools import partial
@@ -26,7 +24,7 @@ from matplotlib.figure import Figure
 from contact import ImpactOscillator, before_collision, collisions, first_collision, simulate
 from contact.integrators import GeneralisedAlpha, Integrator
 from studies import letter
-from studies.methods.stability import IMPLICIT, Findings, Limit
+from studies.methods.stability.model import IMPLICIT, Findings, Limit
 from studies.shell import plotting
 from studies.shell.scene import Scene, beam_at
 

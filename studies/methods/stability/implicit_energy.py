@@ -19,8 +19,6 @@ it leaves at speed (3 - 4u) v if u < 2/3 and (8u - 5) v if u > 2/3, anything fro
 so that the energy grows e-fold in less than two contacts, whatever the step.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from functools import partial
@@ -29,15 +27,14 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from contact.integrators import GeneralisedAlpha
-from studies.methods.stability import IMPLICIT, Findings, Limit
-from studies.methods.stability.free_mass import energy_after
+from studies.methods.stability.model import IMPLICIT, Findings, Limit, energy_after
 from studies.shell import plotting
 from studies.shell.scene import Scene
 
 STIFF, STIFF_GROWTH = 1e4, 2.5 * math.log(3.0) - 2.0
 """h w of a contact that counts as infinitely stiff, (B) being met to 1/(h w); equation (B)."""
 
-entry = partial(Limit, family="implicit_energy", method=GeneralisedAlpha.name)
+entry = partial(Limit, family="implicit_energy", method=GeneralisedAlpha.name, refused=False)
 
 
 def single_contact(label: str, products: np.ndarray, places: np.ndarray) -> np.ndarray:
@@ -68,13 +65,7 @@ def stiff_contacts(count: int) -> list[Limit]:
         (0.05, "rms of energy after/before − 1", 0.05**2 / math.sqrt(90.0), np.sqrt(np.mean(resolved**2))),
     )
     return [
-        entry(
-            case=f"{case}, h ω = {x:g}",
-            parameter=name,
-            theory=theory,
-            measured=float(measured),
-            refused=False,
-        )
+        entry(case=f"{case}, h ω = {x:g}", parameter=name, theory=theory, measured=float(measured))
         for x, name, theory, measured in found
     ]
 
@@ -97,13 +88,8 @@ def draw(arrays: Mapping[str, np.ndarray]) -> tuple[Figure, str]:
     """Growth in one contact against its resolution."""
     figure, axes = plotting.new_figure(width=plotting.COLUMN, height=0.075)
     for number, label in enumerate(IMPLICIT):
-        axes.plot(
-            arrays["single_h_w"],
-            arrays[f"single_{label}"],
-            **plotting.series(number),
-            markevery=3,
-            label=label,
-        )
+        look = {**plotting.series(number), "markevery": 3, "label": label}
+        axes.plot(arrays["single_h_w"], arrays[f"single_{label}"], **look)
     axes.axhline(STIFF_GROWTH, color="0.5", linewidth=0.8, linestyle=":", label="theory: trapezoidal, stiff")
     axes.axhline(0.0, **plotting.GUIDE, label="energy kept")
     axes.set_xscale("log")

@@ -19,8 +19,6 @@ the turning points as well, and miss a crossing only where the tip turns twice b
 no formula. Tried on the lowest mode of the scene; fixed steps are a hundredth of its period.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields
@@ -31,21 +29,19 @@ from matplotlib.figure import Figure
 
 from contact import LinearContact, NewtonRestitution, Stop
 from contact.integrators import INTEGRATORS, CentralDifference, Integrator, MoreauJean, SampledFlight
-from studies.methods.crossings import Swing
+from studies.methods.crossings import Crossing
 from studies.methods.peers import OutsideSolver
-from studies.methods.stability import Findings, Limit, threshold
+from studies.methods.stability.model import Findings, Limit, threshold
 from studies.shell import plotting
 from studies.shell.digits import written
 from studies.shell.scene import Scene, model_of
 
 OVERSHOOTS = 10.0 ** -np.arange(1, 13)
-FINE = np.geomspace(1e-12, 1e-1, 276)
-"""Where the formulas are drawn, 25 points a decade."""
+FINE = np.geomspace(1e-12, 1e-1, 276)  # where the formulas are drawn, 25 points a decade
 PHASES = 64
 """Runs for each overshoot. A share is good to 0.5/sqrt(runs) for a solver whose steps do not keep to a grid,
 and the overshoot at which it is one half to a factor exp(2/sqrt(runs)): 1.3."""
-RESTITUTION = 0.5
-"""Of the stops with Newton's law [1]."""
+RESTITUTION = 0.5  # of the stops with Newton's law [1]
 
 entry = partial(Limit, family="missed_crossings")
 
@@ -54,34 +50,33 @@ entry = partial(Limit, family="missed_crossings")
 class Trial:
     """A method to try."""
 
-    swing: Swing
+    crossing: Crossing
     method: Integrator
     label: str
-    kind: str
-    """"exact", "step" (and samples) or "control" of the error."""
+    kind: str  # "exact", "step" (and samples) or "control" of the error
     step: float | None = None
     """Between its looks [s]; None for a method that searches between its steps, or chooses them itself."""
 
     @property
     def percussions(self) -> bool:
         """Whether it strikes."""
-        return isinstance(self.swing.oscillator.stop.law, NewtonRestitution)
+        return isinstance(self.crossing.oscillator.stop.law, NewtonRestitution)
 
 
 def share_missed(
-    overshoot: float | np.ndarray, step: float, pace: float, percussions: bool = False
+    overshoot: float | np.ndarray, step: float, rate: float, percussions: bool = False
 ) -> np.ndarray:
     """Share of crossings missed, (a) or (b), for overshoots over gap [1]."""
     if percussions:
-        x = 0.5 * (np.sqrt(1.0 + 8.0 * overshoot / (pace * step) ** 2) - 1.0)
+        x = 0.5 * (np.sqrt(1.0 + 8.0 * overshoot / (rate * step) ** 2) - 1.0)
         return np.maximum(0.0, 1.0 / (1.0 + RESTITUTION) - x)
-    duration = 2.0 * np.sqrt(2.0 * overshoot) / pace
+    duration = 2.0 * np.sqrt(2.0 * overshoot) / rate
     return np.maximum(0.0, 1.0 - duration / step)
 
 
 def invented(trial: Trial) -> float | None:
     """Theory of the undershoot over gap down to which a method invents touches: (c), and what central
-    difference swings too high [1]."""
+    difference rises too high [1]."""
     if trial.step is None:
         return None
     if trial.percussions:
@@ -90,7 +85,7 @@ def invented(trial: Trial) -> float | None:
         part = 0.125
     else:
         return None
-    return part * float(trial.swing.pace * trial.step) ** 2
+    return part * float(trial.crossing.rate * trial.step) ** 2
 
 
 def share_wrong(trial: Trial, overshoot: float, runs: int) -> float:
@@ -99,34 +94,34 @@ def share_wrong(trial: Trial, overshoot: float, runs: int) -> float:
     A first touch is the crossing if the tip is beyond the stop within two looks of it; where a solver chooses
     its looks, if it lies next to the peak.
     """
-    swing, wrong = trial.swing, 0
-    slack = 2.0 * trial.step if trial.step else (1.0 if trial.kind == "control" else 1e-6) / swing.pace
-    for lead in swing.leads(runs).tolist():
-        at = swing.touch(trial.method, overshoot, lead)
+    crossing, wrong = trial.crossing, 0
+    slack = 2.0 * trial.step if trial.step else (1.0 if trial.kind == "control" else 1e-6) / crossing.rate
+    for lead in crossing.leads(runs).tolist():
+        at = crossing.touch(trial.method, overshoot, lead)
         near = np.array([at - slack, at + slack, 0.0 if abs(at) <= slack else at])
-        seen = overshoot < 0.0 or bool(np.any(swing.height_at(overshoot, near) > 0.0))
+        seen = overshoot < 0.0 or bool(np.any(crossing.height_at(overshoot, near) > 0.0))
         wrong += (math.isfinite(at) and seen) == (overshoot < 0.0)
     return wrong / runs
 
 
-def swing_of(scene: Scene, method: Integrator | None = None) -> Swing:
+def crossing_of(scene: Scene, method: Integrator | None = None) -> Crossing:
     """The lowest mode of the scene before a stop with a law that `method` knows, soft enough for any step."""
     model = model_of(scene).truncated(1)
     soft = LinearContact(stiffness=0.01 * float((model.omega[0] / model.phi[0]) ** 2))
     hard = NewtonRestitution(local_restitution=RESTITUTION)
     law = soft if method is None or method.accepts(soft.code) else hard
-    return Swing.of(model, Stop(gap=scene.stop.gap_m, law=law), 0.0)
+    return Crossing.of(model, Stop(gap=scene.stop.gap_m, law=law), 0.0)
 
 
 def of_package(scene: Scene, kind: type[Integrator], options: Mapping[str, float]) -> Trial:
-    """A method of the package with those of the `options` that it knows."""
+    """A method of the package with the `options` that it knows."""
     known = {entry.name for entry in fields(kind)}  # type: ignore[arg-type]
     method = kind(**{name: value for name, value in options.items() if name in known})
     name = "Moreau-Jean" if kind is MoreauJean else kind.name.replace("-", " ")
     return Trial(
         label=f"{name}, {options['points']} points" if "points" in known else name,
         method=method,
-        swing=swing_of(scene, method),
+        crossing=crossing_of(scene, method),
         kind="exact" if kind.certified else "step",
         step=options["step"] if "step" in known else None,
     )
@@ -136,7 +131,10 @@ def of_scipy(scene: Scene, solver: str, tolerance: float) -> Trial:
     """A solver of SciPy, which has no theory here: its looks are as far apart as its error control allows."""
     method = OutsideSolver(solver=f"scipy {solver}", tolerance=tolerance)
     return Trial(
-        method=method, swing=swing_of(scene), kind="control", label=f"SciPy {solver}, {written(tolerance)}"
+        method=method,
+        crossing=crossing_of(scene),
+        kind="control",
+        label=f"SciPy {solver}, {written(tolerance)}",
     )
 
 
@@ -167,7 +165,9 @@ def tried(trial: Trial, runs: int) -> tuple[list[Limit], dict[str, np.ndarray]]:
         shares.append(1.0 if shares[-2:] == [1.0, 1.0] else wrong(overshoot))
     arrays = {f"{trial.kind}|{trial.label}": np.array(shares)}
     if trial.step:
-        share = partial(share_missed, step=trial.step, pace=trial.swing.pace, percussions=trial.percussions)
+        share = partial(
+            share_missed, step=trial.step, rate=trial.crossing.rate, percussions=trial.percussions
+        )
         theory = threshold(lambda depth: bool(share(depth) > 0.5), ladder, relative=1e-12)
         arrays[f"theory|{trial.label}"] = share(FINE)
     rows = [

@@ -14,12 +14,9 @@ the tip off the stop even at rest; the motion then is affine in pieces, M not it
 from up to 2.2 % below that limit at h omega_N = 2.5. So order 4 is left out.
 """
 
-from __future__ import annotations
-
 from beam import ModalModel
 from contact.integrators import Splitting
-from studies.methods.stability import Findings, Limit
-from studies.methods.stability.lasting_contact import stiffest
+from studies.methods.stability.model import Findings, Limit, stiffest
 from studies.shell.scene import Scene, model_of
 
 

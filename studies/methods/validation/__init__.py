@@ -1,1 +1,1 @@
-"""The package beside published numbers."""
+"""The package beside published numbers, one function a source."""

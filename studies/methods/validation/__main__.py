@@ -3,17 +3,12 @@
 Claim: six sources print frequencies, folds, doublings, grazing points or motions. This package has each of
 these numbers within the error of its source, or a third route shows which side is right.
 
-    one mode, hard or soft wall    Ghosh and Simpson; COCO 15.2; SDND122; the Aberdeen rig
-    two bars                       SDNL111: the contact of two uniform bars, tip to tip
-    two beams                      Woiwode and Krack: measured frequencies of both beams
-
-Each source keeps its own numbers; the scene is not used. A note gives the third route.
+Four of them have one mode and a wall, one has two bars, one two beams (`model`). Each source keeps its own
+numbers; the scene is not used. A note gives the third route.
 
 Run:     python -m studies validation
 Writes:  sources.csv (agreeing and differing numbers of each source), rows.csv, differences.png
 """
-
-from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -22,10 +17,15 @@ from typing import Annotated
 from matplotlib.figure import Figure
 
 from contact import ContactError
-from studies.methods.validation.bars import two_bars
-from studies.methods.validation.one_mode import aberdeen, coco, ghosh_simpson, sdnd122
-from studies.methods.validation.printed import Printed
-from studies.methods.validation.two_beams import two_beams
+from studies.methods.validation.model import (
+    Printed,
+    aberdeen,
+    coco,
+    ghosh_simpson,
+    sdnd122,
+    two_bars,
+    two_beams,
+)
 from studies.shell import plotting
 from studies.shell.digits import written
 from studies.shell.scene import Scene
@@ -40,8 +40,7 @@ SOURCES: Mapping[str, Callable[[], list[Printed]]] = {
     "Woiwode and Krack 2024": two_beams,
 }
 
-FLOOR = 1e-6
-"""Differences below this part of the source's error are drawn there."""
+FLOOR = 1e-6  # differences below this part of the source's error are drawn there
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -22,16 +22,16 @@ Run:     python -m studies work_precision
 Writes:  rows.csv, cheapest.csv, costs.csv, gradients.csv; work_precision.png
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Annotated
 
+from studies import letter
 from studies.methods.peers import missing_solvers
 from studies.methods.work_precision import costs, gradients
-from studies.methods.work_precision.measures import (
+from studies.methods.work_precision.methods import EXACT, SAMPLED, sweeps_for
+from studies.methods.work_precision.model import (
     REPEATS,
     SLOWEST,
     Point,
@@ -40,13 +40,12 @@ from studies.methods.work_precision.measures import (
     reference_of,
     rows_of,
 )
-from studies.methods.work_precision.methods import EXACT, SAMPLED, sweeps_for
 from studies.methods.work_precision.problems import EQ_1, HERTZ, MODES, problems_of
 from studies.shell.digits import written
 from studies.shell.scene import Scene, harmonic, single_mode_at
 from studies.shell.study import Run, study
 
-SLOWEST_QUICK, MODES_QUICK, GRADIENT_HZ = 0.01, 4, 22.2
+SLOWEST_QUICK, MODES_QUICK, GRADIENT_HZ = 0.01, 4, letter.TRANSITION_HZ[5]
 """With --quick: longest time for a drive period [s], modes of the beam. Drive frequency of gradients [Hz]."""
 
 
@@ -91,11 +90,11 @@ def work_precision(scene: Scene, run: Run) -> Mapping[str, object]:
     if missing_solvers():
         run.say(f"not installed: {', '.join(missing_solvers())}")
 
-    from studies.methods.work_precision import figures  # matplotlib is slow to import
+    from studies.methods.work_precision import figure  # matplotlib is slow to import
 
     run.figure(
         "work_precision",
-        figures.draw_errors(rows, references),
+        figure.draw_errors(rows, references),
         "Error of mode 1 past the first collision against the time for a drive period; for two masses, error "
         "of a periodic orbit against the time that finds it. The errors of the references are below "
         f"{written(2.0 * max(one.own_error for one in references), 1)}.",

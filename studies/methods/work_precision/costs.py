@@ -7,22 +7,22 @@ loop as its documentation recommends, and the beam through the interface of all 
 with which mode 1 errs by less than 1e-8 past a collision.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from statistics import median
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 
 from contact import ImpactOscillator, StroboscopicMap, simulate
 from studies import letter
 from studies.methods.peers import OutsideSolver, missing_solvers
+from studies.methods.peers.adapters import Heyoka, heyoka_equations
+from studies.methods.peers.piecewise import numbers_of
+from studies.methods.work_precision.model import Orbit, in_turns
 from studies.methods.work_precision.problems import EQ_1, HERTZ
-from studies.methods.work_precision.timing import Orbit, in_turns
 from studies.shell.scene import Scene, beam_at, harmonic, model_of, single_mode_at
 from studies.shell.study import Run
 
@@ -31,8 +31,7 @@ SINGLE, BEAM, FREE = EQ_1, HERTZ, "beam, no touch"
 EXCESS, SINGLE_EXCESS, BELOW = letter.TIME_TRACE_EXCESS, 0.02, -0.02
 """F/F_g - 1 of the beam, of Eq. (1), and of a motion without a touch."""
 
-FREQUENCY, SETTLING = 21.50, 2000
-"""The letter's Fig. 4 [Hz]; drive periods before the clock starts: a free motion falls to 0.92 in each."""
+SETTLING = 2000  # drive periods before the clock starts: a free motion falls to 0.92 in each
 
 COUNTS, COUNTS_QUICK, TOLERANCE = (1, 2, 4, 8, 15, 20, 40), (1, 8), 1e-7
 """Numbers of modes; of heyoka the coarsest decade that brings its error with eight modes below 1e-8."""
@@ -57,27 +56,24 @@ def costs(scene: Scene, run: Run) -> list[Cost]:
     counts = COUNTS_QUICK if run.quick else COUNTS
     model = model_of(harmonic(scene).replace({"modes.count": max(counts)}))
     cases = [(SINGLE, single_mode_at(scene, frequency)) for frequency in frequencies]
-    cases += [(BEAM, beam_at(scene, FREQUENCY, model.truncated(n))) for n in counts]
+    cases += [(BEAM, beam_at(scene, letter.TIME_TRACE_HZ, model.truncated(n))) for n in counts]
     tracked = run.track(cases, "costs of a drive period")
     return [row for case, oscillator in tracked for row in rows_of(case, oscillator, quick=run.quick)]
 
 
-def heyoka_orbit(oscillator: ImpactOscillator) -> tuple[Orbit, Any]:
+def heyoka_orbit(oscillator: ImpactOscillator) -> tuple[Orbit, Heyoka]:
     """An orbit of Eq. (1) from rest by heyoka alone, the impact in the callback of an event, at its default
     tolerance (the rounding of a double); and its integrator."""
     import heyoka as hy
 
-    model, drive = oscillator.model, oscillator.driven
-    w, (x, v) = drive.angular_frequency, hy.make_vars("x", "v")
-    push = model.participation[0] * drive.amplitude * w**2 * hy.sin(w * hy.time)
-    system = [(x, v), (v, push - model.decay_rate[0] * v - model.omega[0] ** 2 * x)]
+    modes, scalars = numbers_of(oscillator)
+    system, depth = heyoka_equations(modes.tolist(), scalars.tolist())
 
-    def impact(taylor: Any, _sign: int) -> bool:
+    def impact(taylor: Heyoka, _sign: int) -> bool:
         taylor.state[1] *= -oscillator.stop.law.numbers[0]
         return True
 
-    surface, rising = x - oscillator.stop.gap / model.phi[0], hy.event_direction.positive
-    touch = hy.t_event(surface, direction=rising, callback=impact)
+    touch = hy.t_event(depth, direction=hy.event_direction.positive, callback=impact)
     taylor = hy.taylor_adaptive(system, np.zeros(2), t_events=[touch])
     return lambda periods: taylor.propagate_until(taylor.time + periods * oscillator.period), taylor
 

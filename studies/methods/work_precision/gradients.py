@@ -6,11 +6,9 @@ by the six parameters of `NAMES`.
     exact        tangents through flights and impacts (contact.sensitivity.motion)
     differences  central, of the same motion, at relative steps of 1e-3 ... 1e-12
 
-Errors are those of all 18 numbers, each parameter in units of its value, each result in units of its largest
-derivative, against differences of the closed form in 60 digits.
+An error is the norm over 18 numbers, each parameter in units of its value, each result in units of its
+largest derivative, against differences of the closed form in 60 digits.
 """
-
-from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -23,16 +21,14 @@ from numpy.typing import NDArray
 
 from contact import ImpactOscillator, State, simulate
 from contact.orbits import motion_derivatives
-from studies.methods.work_precision.timing import timed
+from studies.methods.work_precision.model import timed
 from studies.physics.parameters import changes_of, parameters_of, with_values
 
 Array = NDArray[np.float64]
 
 NAMES = ("free_period", "decay_rate", "gap", "restitution", "frequency", "amplitude")
-PERIODS, REPEATS = 20, 11
-"""Drive periods; runs of which the median processor time counts."""
-POLISHED = 3
-"""Steps of Newton's method from the 16 digits of a double to 60 and more."""
+PERIODS, REPEATS = 20, 11  # drive periods; runs of which the median processor time counts
+POLISHED = 3  # steps of Newton's method from the 16 digits of a double to 60 and more
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -13,8 +13,6 @@ at speed v makes x''' jump by k v sum phi_k^2: x_h falls as h^-4 once h w is abo
 what is left of the series as H^-3, of sampling as S^-2; with a dashpot each a power slower. SI units.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

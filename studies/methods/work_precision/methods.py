@@ -5,8 +5,6 @@ of the fastest mode, 2/omega, if that is smaller, and are quartered from one set
 solvers run over their tolerance. The exact method has one setting.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -27,14 +25,12 @@ from studies.methods.peers import OutsideSolver, installed_solvers
 from studies.methods.work_precision.problems import Problem
 
 EXACT, STEPPED, OUTSIDE, PERIODIC = "exact", "fixed step", "outside", "periodic motion"
-SAMPLED = "sampled flight"
-"""The letter's own scheme, note [11]."""
+SAMPLED = "sampled flight"  # the letter's own scheme, note [11]
 
 FINEST, FINEST_HARD = 7, 10
 """Settings of a fixed step: down to 1/4096 of a contact, and to 1/2^23 of a period for the hard wall."""
 
-POINTS = tuple(4**k for k in range(1, 9))
-"""Samples of a flight per drive period."""
+POINTS = tuple(4**k for k in range(1, 9))  # samples of a flight per drive period
 
 TOLERANCES = tuple(10.0**-p for p in (3, 5, 7, 9, 11, 13))
 

@@ -14,8 +14,6 @@ once, and is compared one drive period after its start. The cost run follows the
 Errors of mode 1 are given in units of what it does at grazing: displacement gap/phi_1, velocity w gap/phi_1.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 
@@ -34,21 +32,16 @@ from contact import (
     first_collision,
 )
 from contact.orbits import settle
+from studies.letter import TIME_TRACE_EXCESS, TIME_TRACE_HZ
 from studies.shell.scene import Scene, beam_at, hertz_of, single_mode_at
-
-FREQUENCY, EXCESS = 21.50, 0.013
-"""Drive frequency [Hz] and F/F_g - 1 of the letter's Fig. 4."""
 
 EQ_1, HERTZ = "Eq. (1)", "beam, Hertz contact"
 
-MODES = 8
-"""Modes of the beam: the highest, at 3.3 kHz, swings a fifth of a turn during a contact."""
+MODES = 8  # modes of the beam: the highest, at 3.3 kHz, turns by a fifth during a contact
 
-SETTLING = 4000
-"""Drive periods within which the orbit has settled: a free motion falls to 0.92 in each."""
+SETTLING = 4000  # drive periods within which the orbit has settled: a free motion falls to 0.92 in each
 
-UNSETTLED = 16
-"""Drive periods of the cost run where the motion has no period."""
+UNSETTLED = 16  # drive periods of the cost run where the motion has no period
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -56,27 +49,20 @@ class Problem:
     """A motion to be computed by every method."""
 
     name: str
-    title: str
-    """Under which its rows are listed; what a figure says."""
+    title: str  # under which its rows are listed; what a figure says
     oscillator: ImpactOscillator
-    start: State
-    """Of the error run."""
+    start: State  # of the error run
     probe: float
     duration: float
     """Time at which mode 1 is compared, and length of the error run; with a drive it goes on beyond the
     probe, so that no step is cut short for it [s]."""
-    period: float
-    """Unit of time: the drive period, or the swung beam's whole run [s]."""
+    period: float  # unit of time: the drive period, or the free beam's whole run [s]
     size: float
-    speed: float
-    """Scales of mode 1's displacement and velocity [m kg^0.5], [m kg^0.5/s]."""
+    speed: float  # scales of mode 1's displacement and velocity [m kg^0.5], [m kg^0.5/s]
     cost_start: State
-    cost_periods: int
-    """On the settled orbit; units of time in which that repeats."""
-    contact_time: float
-    """Of the first touch, 0 for an impact law [s]."""
-    unit: str = "drive period"
-    """What a cost is the time for."""
+    cost_periods: int  # on the settled orbit; units of time in which that repeats
+    contact_time: float  # of the first touch, 0 for an impact law [s]
+    unit: str = "drive period"  # what a cost is the time for
 
 
 def driven_problem(name: str, title: str, oscillator: ImpactOscillator) -> Problem:
@@ -107,23 +93,17 @@ def linear_beam(scene: Scene) -> ImpactOscillator:
     def with_stiffness(stiffness: float) -> ImpactOscillator:
         return replace(hertz, stop=Stop(gap=hertz.stop.gap, law=LinearContact(stiffness=stiffness)))
 
+    def longer(stiffness: float) -> float:
+        return first_collision(with_stiffness(stiffness)).contact_time - wanted
+
     guess = (math.pi / wanted) ** 2 / float(hertz.model.phi @ hertz.model.phi)
-    return with_stiffness(
-        float(
-            brentq(
-                lambda k: first_collision(with_stiffness(k)).contact_time - wanted,
-                0.25 * guess,
-                4.0 * guess,
-                xtol=1e-13 * guess,
-            )
-        )
-    )
+    return with_stiffness(float(brentq(longer, 0.25 * guess, 4.0 * guess, xtol=1e-13 * guess)))
 
 
 def hertz_beam(scene: Scene) -> ImpactOscillator:
     """The scene's beam with the scene's Hertz contact, at the excess of Fig. 4."""
     stop = Stop(gap=scene.stop.gap_m, law=hertz_of(scene))
-    return replace(beam_at(scene, FREQUENCY), stop=stop).with_excess(EXCESS)
+    return replace(beam_at(scene, TIME_TRACE_HZ), stop=stop).with_excess(TIME_TRACE_EXCESS)
 
 
 def two_masses(w: float, force: float = 0.1) -> ImpactOscillator:
@@ -143,7 +123,7 @@ def two_masses(w: float, force: float = 0.1) -> ImpactOscillator:
 def problems_of(scene: Scene, modes: int = MODES) -> list[Problem]:
     """The driven problems of the study, the beam with `modes` modes."""
     beam = scene.replace({"modes.count": modes})
-    one = single_mode_at(scene, FREQUENCY).with_excess(EXCESS)
+    one = single_mode_at(scene, TIME_TRACE_HZ).with_excess(TIME_TRACE_EXCESS)
     return [
         driven_problem(EQ_1, "Eq. (1), hard wall", one),
         driven_problem("beam, linear contact", f"beam, {modes} modes, linear contact", linear_beam(beam)),

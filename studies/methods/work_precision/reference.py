@@ -16,11 +16,9 @@ passed over a touch, the exact method would stand in the table with a large erro
 Everything starts from the same doubles that the package's own methods are given, so that a difference
 between the two is an error of the method. Two runs, of other digits and therefore of other order and steps,
 differ by what is stated as the reference's own error; tests compare it with closed forms and with matrix
-exponentials. The numbers are those of Python's decimal module, thirty times as fast as mpmath's, which gives
+exponentials. The numbers are of Python's decimal module, thirty times as fast as mpmath's, which gives
 sine and cosine at the start. Units: SI, q in m kg^0.5.
 """
-
-from __future__ import annotations
 
 from dataclasses import dataclass
 from decimal import Decimal, getcontext, localcontext
@@ -32,15 +30,13 @@ from numpy.polynomial.polynomial import polyder, polyval
 from beam import InvalidValue
 from contact import HertzContact, ImpactOscillator, LinearContact, NewtonRestitution, State
 
-DIGITS = (24, 30)
-"""Decimal digits of the run that is kept and of the one that tells its error."""
+DIGITS = (24, 30)  # decimal digits of the run that is kept and of the one that gives its error
 
 SAMPLES = 24
 """Points of a step, which is some four radians of the fastest mode: a parabola through three of them errs by
 1e-3 of that mode's part in a peak."""
 
-MOST_STEPS = 100_000
-"""Bound of series steps in a motion: a drive period with eight modes takes three hundred."""
+MOST_STEPS = 100_000  # bound of series steps in a motion: a drive period with eight modes takes three hundred
 
 MOST_ITERATIONS = 60
 """Bound of Newton's method: from a bracket of a sixth of a radian it takes six to reach 30 digits."""
@@ -92,9 +88,9 @@ class ExtendedSpring:
         time = Decimal(state.time)
         with mp.workdps(self.digits + 5):
             turn = mp.mpf(str(self.drive * time))
-            swing = [Decimal(mp.nstr(f(turn), self.digits)) for f in (mp.sin, mp.cos)]
+            shake = [Decimal(mp.nstr(f(turn), self.digits)) for f in (mp.sin, mp.cos)]
         return np.array(
-            [*extended(state.displacement), *extended(state.velocity), *swing, ZERO, time], dtype=object
+            [*extended(state.displacement), *extended(state.velocity), *shake, ZERO, time], dtype=object
         )
 
     def series(self, point: np.ndarray, contact: bool) -> np.ndarray:
@@ -103,19 +99,19 @@ class ExtendedSpring:
         rows = np.full((orders + 1, point.size), ZERO, dtype=object)
         rows[0], root, square = point, rows[:, -2], np.full(orders, ZERO, dtype=object)
         for order in range(orders):
-            now, force, pace = rows[order], ZERO, ONE if order == 0 else ZERO  # times g; g N; g
+            now, force, stretch = rows[order], ZERO, ONE if order == 0 else ZERO  # times g; g N; g
             if sigma:
-                back, pace = root[order::-1], root[order]
+                back, stretch = root[order::-1], root[order]
                 now, square[order] = back @ rows[: order + 1], back @ root[: order + 1]
                 force = self.number * (square[order::-1] @ square[: order + 1])
             elif contact:
-                force = self.number * (self.phi @ now[:n] - self.gap * pace)
+                force = self.number * (self.phi @ now[:n] - self.gap * stretch)
             q, v, sine, cosine = now[:n], now[n : 2 * n], now[2 * n], now[2 * n + 1]
             following = rows[order + 1]
             following[:n] = v
             following[n : 2 * n] = self.push * sine - self.decay * v - self.stiffness * q - self.phi * force
             rate = self.phi @ rows[order, n : 2 * n] / 2 if sigma else ZERO
-            following[2 * n :] = [self.drive * cosine, -self.drive * sine, rate, pace]
+            following[2 * n :] = [self.drive * cosine, -self.drive * sine, rate, stretch]
             following *= ONE / (order + 1)
         return rows
 

@@ -15,19 +15,14 @@ as stiffness and strain (beam.space). Each shape is brought to omega_1^2 = (2 pi
 thickness, the channel by its flanges. The scene gives length, width, bend radius, sheet material, ball and
 period; its tape plays no part. The rotary inertia of ball and mount counts about every axis.
 
-The beam of the scene simplifies the flat U, which is a sheet. As a Kirchhoff plate its deflection w obeys
-
-    int D ((1 - nu) w_ij v_ij + nu lap w lap v) + m (w.. + y..) v dA + M (w.. + y..) v (tip) = F v (tip)
-
-(symbols in `plate`), and in some of its modes the legs twist. Question: does the plate change the born
-periods and the ends of the orbits? This part needs spring.kind = "flat_u" and a harmonic drive.
+The beam of the scene simplifies the flat U, which is a sheet. As a Kirchhoff plate (`plate`) it has modes in
+which the legs twist. Question: does the plate change the born periods and the ends of the orbits? This part
+needs spring.kind = "flat_u" and a harmonic drive.
 
 Run:     python -m studies shape [--quick]
 Writes:  readings.csv (a row a shape); of a flat U plate_ends.csv (a row a frequency);
          springs.csv (a row a reading, bend radius, gap and ball); the figure finite_amplitude
 """
-
-from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import partial
@@ -84,11 +79,11 @@ def compare_plate(scene: Scene, run: Run) -> list[OrbitEnds]:
         caption += f" Plates and beam differ in the sign of the end at {', '.join(doubtful)} Hz."
     run.table("plate_ends", orbits, caption, of=OrbitEnds)
     kept = "keeps every period" if all(row.same_period for row in orbits) else "changes a period"
-    told = f"As a plate the spring {kept} that is born"
+    said = f"As a plate the spring {kept} that is born"
     if factors := [f for row in known if min(row.factors) > 0.0 for f in row.factors]:
         most = max(*factors, *(1.0 / factor for factor in factors))
-        told += f"; the ends of the orbits move by a factor of up to {most:.1f}"
-    run.finding(f"{told}.")
+        said += f"; the ends of the orbits move by a factor of up to {most:.1f}"
+    run.finding(f"{said}.")
     return orbits
 
 
@@ -106,5 +101,5 @@ def finite_amplitude(scene: Scene, run: Run) -> list[Survival]:
     row = next(r for r in rows if (r.reading, r.bend_radius_m, r.gap_m, r.tip_mass_kg) == own)
     kept = f" and keeps {row.survive or 'none'} of the letter's periods" if run.letters else ""
     bends = "softens" if row.kappa < 0.0 else "stiffens"
-    run.finding(f"Folded with the scene's bend, the strip {bends} as it swings{kept}.")
+    run.finding(f"Folded with the scene's bend, the strip {bends} at large amplitudes{kept}.")
     return rows

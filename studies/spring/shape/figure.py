@@ -1,7 +1,5 @@
 """The periods of the letter that survive at the amplitude of the gap."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from matplotlib.figure import Figure

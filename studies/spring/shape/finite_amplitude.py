@@ -8,14 +8,12 @@
 
 Readings: `folded` (both ends clamped, the ball on the bend), `side_by_side` (two legs in the plane of the
 sheet) and `plain`, a single leaf; in the plane a channel is a plain strip. Sheets are as thick as the free
-period asks. With the scene's own ball and gap the frame with finite rotations is solved as well: where its
-effective period differs by more than 0.005 ms, the cubic stiffness is the one that gives the frame's.
+period requires. With the scene's own ball and gap the frame with finite rotations is solved as well: where
+its effective period differs by more than 0.005 ms, the cubic stiffness is the one that gives the frame's.
 
 A touch of the nonlinear mode is located to 1e-14 of the gap within a step of a Taylor series; what the cubic
 terms leave out is the difference to the frame.
 """
-
-from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -30,13 +28,13 @@ from scipy.optimize import newton
 from beam import FiniteRotation, backbone_coefficient, periodic_motion
 from contact import NonlinearMode
 from contact.orbits import born_period
+from studies.letter import AMPLITUDE_STABILITY
 from studies.physics.calibration import calibrate_thickness
 from studies.shell.scene import Scene, harmonic, nonlinear_mode_at, periods_of, spring_of
 from studies.spring.shape.shapes import TITLES, Reading
 
 Answer = TypeVar("Answer")
-Key = tuple[Reading, float, float]
-"""A spring of the map: its reading, bend radius [m] and ball [kg]."""
+Key = tuple[Reading, float, float]  # a spring of the map: its reading, bend radius [m] and ball [kg]
 
 LEAVES: tuple[Reading, ...] = ("side_by_side", "plain")
 """Readings that bend as one leaf, whatever the radius of the bend."""
@@ -44,11 +42,10 @@ RADII = (4e-3, 5.5e-3, 7.5e-3, 10e-3, 15e-3, 20e-3, 25e-3, 30e-3, 40e-3)
 GAPS, BALLS = (4e-3, 7e-3, 15e-3, 20e-3), (0.0, 4e-3, 8e-3)
 """Bend radii, gaps [m] and masses of ball and mount [kg] beside the scene's own."""
 
-EXCESSES = (2.5e-4, 1e-3)
-"""At which the born period is asked: the letter's stability, and its scale."""
+EXCESSES = (AMPLITUDE_STABILITY, 1e-3)
+"""At which the born period is computed: the letter's stability, and its scale."""
 
-CLOSE = 5e-6
-"""Effective periods of mode and frame that agree to this are the same [s]."""
+CLOSE = 5e-6  # effective periods of mode and frame that agree to this are the same [s]
 
 COARSE = {"spring.elements_per_leg": 24, "spring.elements_on_arc": 24}
 STRAIGHT_ELEMENTS, ARC_ELEMENTS = 12, 24
@@ -74,7 +71,7 @@ class Survival:
 
 
 def reading_of(scene: Scene, reading: str, radius: float, ball: float) -> Scene:
-    """The scene with its spring read so, the sheet as thick as the free period asks."""
+    """The scene with its spring read so, the sheet as thick as the free period requires."""
     kind = {"folded": "folded_u", "side_by_side": "flat_u"}.get(reading, "cantilever")
     changed = scene.replace(
         {"spring.kind": kind, "spring.bend_radius_m": radius, "tip.mass_kg": ball, **COARSE}

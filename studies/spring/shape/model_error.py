@@ -7,8 +7,6 @@ the beam's. Gap, drive and contact law stay. The modes are extrapolated from two
 elements half as long, as their errors fall as h^2.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -24,17 +22,14 @@ from studies.shell.scene import READOUT, Scene, beam_at, sections_of
 from studies.shell.study import Run
 from studies.spring.shape.plate import PlateModes, half_u, plate_modes
 
-MODES = 30
-"""Symmetric modes computed for a plate, with which the kick has converged."""
+MODES = 30  # symmetric modes computed for a plate, with which the kick has converged
 
 COARSE, FINE = (1, 2), (2, 3)
 """Cells over the radius of the seat and over the rim beside it, in the coarser of two meshes, in pairs."""
 
-WIDEST_SEAT = 0.8
-"""Radius of the seat over half of the width, at most: the rim beside it needs room."""
+WIDEST_SEAT = 0.8  # radius of the seat over half of the width, at most: the rim beside it needs cells
 
-PLATES = ("point", "seat")
-"""Mounts of the ball: on a point of the sheet, and on a rigid seat."""
+PLATES = ("point", "seat")  # mounts of the ball: on a point of the sheet, and on a rigid seat
 
 
 @dataclass(frozen=True, kw_only=True)

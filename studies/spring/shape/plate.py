@@ -145,8 +145,7 @@ def plate_modes(
     return PlateModes(omega=np.sqrt(squares[order]), phi=phi, participation=participation)
 
 
-LONGEST = 2.0
-"""Length of a cell over its width, on the leg."""
+LONGEST = 2.0  # length of a cell over its width, on the leg
 
 
 def half_u(

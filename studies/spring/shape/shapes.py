@@ -24,8 +24,6 @@ With ball and contact off the plane of symmetry by d [m], a twist mode that turn
 computed with the ball where it is, not to first order.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 from typing import Annotated, Literal
@@ -54,28 +52,22 @@ TITLES: dict[Reading, str] = {
     "plain": "plain strip",
 }
 
-THINNEST, THICKEST = 5e-4, 0.05
-"""The sheet is looked for between these parts of the length."""
+THINNEST, THICKEST = 5e-4, 0.05  # the sheet is looked for between these parts of the length
 
-FLANGE_REACH = 1.0
-"""Flanges are looked for up to this part of the width."""
+FLANGE_REACH = 1.0  # flanges are looked for up to this part of the width
 
-ACCURACY = 1e-12
-"""Of the fitted size [m]."""
+ACCURACY = 1e-12  # of the fitted size [m]
 
-CHANNEL_SHEET = 0.25
-"""Sheet of the channel over that of the plain strip."""
+CHANNEL_SHEET = 0.25  # sheet of the channel over that of the plain strip
 
-OFF_LINE = 0.5e-3
-"""Distance of the ball off the plane of symmetry, as careful gluing leaves it [m]."""
+OFF_LINE = 0.5e-3  # distance of the ball off the plane of symmetry, as careful gluing leaves it [m]
 
-MODES = 14
-"""Modes looked through for the first of each kind."""
+MODES = 14  # modes looked through for the first of each kind
 
 
 @dataclass(frozen=True, kw_only=True)
 class Shape:
-    """One reading with its sizes [m]; `flange`: how far those of a channel stand out of the web, else 0."""
+    """One reading with its sizes [m]; `flange`: how far flanges stand out of the web of a channel, else 0."""
 
     reading: Reading
     material: Material

@@ -1,20 +1,19 @@
-"""Questions to a model, the distance of two answers, and the least model whose answer is near enough.
+"""The models that may be enough, the quantities that they are to give, and the search for the least one.
 
-    frequency K      K-th frequency of the modes that move the ball [Hz]; error relative
-    restitution      of the first collision at excess 0.0065, 0.013 and 0.026 [1]; error absolute
-    delay            of these collisions over v/a, the time in which the tip would turn by itself; absolute
-    kick             of these collisions [1]; error absolute
+    Eq. (1)   Eq. (1) of the letter: one mode of measured period and decay rate, Newton's law with tau
+    beam      the finite-element model of the spring, or its measured modes
+
+A residual mode replaces the modes left out (``ModalModel.with_residual_mode``).  Quantities and errors are
+as in ``studies.physics.least_model``, at one drive frequency each, with three differences:
+
+    delay            of the three collisions over v/a, the time in which the tip would turn by itself;
+                     absolute
     born_period      period of the settled orbit at excess 1e-3, at the drive frequency and at both ends of
                      what the error of the free period (letter, Fig. 2) makes of it; error: how many differ
-    fold             F/F_g - 1 at which the p_m orbit has its fold, by shooting; error relative to it, or to
-                     the letter's amplitude stability where it is smaller; infinite if m differs
-    tip_trace        tip over one period of the orbit settled at excess 0.013; error: root mean square
-                     over the gap
+    fold             by shooting
 
-A model that has no answer (no such mode, no return of the single mode, no orbit) is infinitely far off.
+A model without an answer (no such mode, no return of the single mode, no orbit) is infinitely far off.
 """
-
-from __future__ import annotations
 
 import math
 from bisect import bisect
@@ -25,15 +24,17 @@ from typing import Annotated
 
 import numpy as np
 
-from contact import StroboscopicMap
+from beam import ModalModel, reduce
+from contact import ImpactOscillator, StroboscopicMap
 from contact.orbits import born_period, fold_excess
 from studies import letter
-from studies.methods.adequacy.models import EQ_1, LAWS, MESHES, MODES, Choice, Models
 from studies.physics import least_model
 from studies.physics.least_model import (
     COLLISIONS,
+    LADDER,
+    REFERENCE,
     Answer,
-    Ask,
+    AnswerOf,
     At,
     Distance,
     collisions,
@@ -42,10 +43,86 @@ from studies.physics.least_model import (
     fold_of_born,
     largest_error,
 )
-from studies.shell.scene import approach_speed
+from studies.shell.scene import Scene, approach_speed, beam_at, damping_of, model_of, modes_of, single_mode_at
 
-MESH_ORDER = 4
-"""Of frequencies and shapes, with cubic Hermite elements."""
+IN_WORDS = {"newton": "Newton", "linear": "linear", "hertz": "Hertz", "hunt_crossley": "Hunt and Crossley"}
+IN_WORDS["tsuji"] = "Tsuji"
+LAWS = tuple(IN_WORDS)
+MODES = (*LADDER, REFERENCE)
+MESHES = (2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96)  # elements on a leg
+
+BEND_SHARE = 0.8  # elements on the bend for each one on a leg: the proportion of the default mesh
+
+
+@dataclass(frozen=True, kw_only=True)
+class Choice:
+    """A model of the spring and its contact."""
+
+    level: Annotated[str, "model level"]
+    law: Annotated[str, "contact law"]
+    modes: Annotated[int, "modes; without the residual one"] = 1
+    mesh: Annotated[int, "elements on a leg; 0 without a mesh"] = 0
+    residual: Annotated[bool, "a residual mode for those left out"] = False
+
+    @property
+    def words(self) -> str:
+        """In a few words."""
+        if self.level == EQ_1.level:
+            return self.level
+        mesh = f", {self.mesh} elements a leg" if self.mesh else ""
+        more = " and a residual one" if self.residual else ""
+        modes = f"{self.modes} mode{'s' if self.modes > 1 else ''}{more}"
+        return f"{self.level}{mesh}, {modes}, {IN_WORDS[self.law]} contact"
+
+    @property
+    def cost(self) -> float:
+        """Predicted time of a drive period on an orbit with impacts, and of the mesh in the same unit [µs].
+
+        Contact and flight cost a fixed part and one proportional to the modes; the eigenvalue problem, some
+        milliseconds for each element on a leg and paid once, is shared by as many periods as a diagram takes.
+        """
+        fixed, each = {"newton": (1.5, 0.3), "linear": (2.5, 0.4)}.get(self.law, (4.0, 0.6))
+        return fixed + each * (self.modes + self.residual) + 0.06 * self.mesh
+
+
+EQ_1 = Choice(level="Eq. (1)", law="newton")
+
+
+class Models:
+    """The models of one scene, and `sharp`, the reference; each mesh is solved once."""
+
+    def __init__(self, scene: Scene) -> None:
+        kind, radius = scene.spring.kind, scene.tip.ball_radius_m
+        self.scene, self._solved = scene, dict[int, ModalModel]()
+        modes = min(REFERENCE, len(scene.modal_data.frequencies_hz) or REFERENCE)
+        mesh, law = 0 if kind == "modal_data" else MESHES[-1], scene.contact.law
+        law = "hertz" if radius > 0 and law != LAWS[-1] else law
+        self.sharp = Choice(level="beam", law=law, modes=modes, mesh=mesh)
+
+    def oscillator(self, choice: Choice, frequency: float) -> ImpactOscillator:
+        """The impact oscillator of a choice at drive `frequency` [Hz].
+
+        ValueError if the mesh is too coarse for the modes, these leave no residual, or the drive is above
+        them all.
+        """
+        if choice.level == EQ_1.level:
+            return single_mode_at(self.scene, frequency)
+        mesh = choice.mesh
+        if mesh not in self._solved or self._solved[mesh].n_modes < choice.modes:
+            self._solved[mesh] = self._spring(mesh, choice.modes)
+        model = self._solved[mesh].truncated(choice.modes)
+        model = model.with_residual_mode() if choice.residual else model
+        return beam_at(self.scene.replace({"contact.law": choice.law}), frequency, model)
+
+    def _spring(self, mesh: int, modes: int) -> ModalModel:
+        """The spring of the scene itself."""
+        bend = math.ceil(BEND_SHARE * mesh)
+        changes = {"spring.elements_per_leg": mesh, "spring.elements_on_arc": bend, "modes.count": modes}
+        scene = self.scene.replace(changes)
+        return reduce(modes_of(scene), damping_of(scene), modes) if mesh else model_of(scene)
+
+
+MESH_ORDER = 4  # of frequencies and shapes, with cubic Hermite elements
 
 
 def _delays(at: At, frequency: float) -> Answer:
@@ -61,7 +138,7 @@ def _born_periods(at: At, frequency: float) -> Answer:
 
 
 _SHARED = {name: found[:2] for name, found in least_model.QUANTITIES.items()}
-QUANTITIES: Mapping[str, tuple[Ask, Distance, str, float]] = {
+QUANTITIES: Mapping[str, tuple[AnswerOf, Distance, str, float]] = {
     "frequency": (
         lambda at, f: at(f).model.frequencies_hz,
         lambda a, b: largest_error(a / b, b / b),
@@ -103,11 +180,11 @@ class Search:
     def __init__(self, models: Models, quantity: str, frequency: float, sharp: Choice | None = None) -> None:
         name, _, number = quantity.partition(" ")
         self.models, self.quantity, self.frequency = models, quantity, frequency
-        ask, distance, self.unit, self.tolerance = QUANTITIES[name]
+        answer_of, distance, self.unit, self.tolerance = QUANTITIES[name]
         self.sharp = sharp or models.sharp
 
         def answer(choice: Choice) -> Answer:
-            found = ask(lambda f: models.oscillator(choice, f), frequency)
+            found = answer_of(lambda f: models.oscillator(choice, f), frequency)
             if not number or found is None:
                 return found
             return found[int(number) - 1 : int(number)] if int(number) <= choice.modes else None

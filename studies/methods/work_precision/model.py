@@ -11,28 +11,52 @@ that of mode 1 at a strobe in flight; the cost is the time that finds it from th
 The reference has settled and errs by what does not close.
 """
 
-from __future__ import annotations
-
 import math
 import statistics
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from decimal import Decimal
 from functools import partial
-from typing import Annotated
+from statistics import median
+from typing import Annotated, TypeVar
 
 import numpy as np
 
 from contact import ContactError, State, simulate
 from contact.integrators import Integrator
 from contact.orbits import Shooting
-from studies.methods.crossings import Swing
+from studies.methods.crossings import Crossing
 from studies.methods.work_precision.harmonic_balance import balanced
 from studies.methods.work_precision.methods import PERIODIC, Sweep
 from studies.methods.work_precision.problems import Problem, driven_problem, two_masses
 from studies.methods.work_precision.reference import DIGITS, extended_motion
-from studies.methods.work_precision.timing import timed
+
+Name = TypeVar("Name", bound=Hashable)
+Orbit = Callable[[int], object]  # orbit(periods): carries a motion on by that many drive periods
+
+
+def in_turns(runs: Mapping[Name, tuple[Orbit, int]], repeats: int) -> dict[Name, float]:
+    """Median microseconds per drive period of each orbit over its periods.
+
+    Compared programs run in turns, A B A B ..., so that a machine that slows down slows both. Each runs once
+    before the clock starts.
+    """
+    spent: dict[Name, list[float]] = {name: [] for name in runs}
+    for orbit, periods in runs.values():
+        orbit(periods)
+    for _ in range(repeats):
+        for name, (orbit, periods) in runs.items():
+            began = time.thread_time()
+            orbit(periods)
+            spent[name].append(1e6 * (time.thread_time() - began) / periods)
+    return {name: median(times) for name, times in spent.items()}
+
+
+def timed(call: Callable[[], object], repeats: int) -> float:
+    """Median microseconds of a call."""
+    return in_turns({"": (lambda _: call(), 1)}, repeats)[""]
+
 
 REPEATS, SLOWEST = 9, 0.5
 """Timed runs of a point; longest drive period of a setting that is run [s]: errors and cost take twenty."""
@@ -44,8 +68,7 @@ of one point at most [s]: a slower run is timed once."""
 SAMPLES = {5: 1024, 11: 1024, 21: 1024, 41: 4096, 81: 16384, 161: 65536}
 """Orders of harmonic balance; samples grow with their square, so that both errors fall together."""
 
-SETTLING = (20, 80, 320)
-"""Drive periods of settling: deviations fall to 0.886 in each."""
+SETTLING = (20, 80, 320)  # drive periods of settling: deviations fall to 0.886 in each
 
 OVERSHOOTS, PHASES = tuple(10.0**-p for p in range(2, 9)), 4
 """Depths of the crossings over the gap, and starts for each."""
@@ -114,12 +137,14 @@ def error_of(reference: Reference, method: Integrator) -> float:
 
 def missed_share(problem: Problem, method: Integrator) -> float | None:
     """Share of the crossings not seen; a run that fails has seen none. None without a drive, for a stop that
-    is not met by swinging [1]."""
+    is not met freely [1]."""
     if problem.oscillator.drive is None:
         return None
-    swing = Swing.of(problem.oscillator.model, problem.oscillator.stop, RINGING)
+    crossing = Crossing.of(problem.oscillator.model, problem.oscillator.stop, RINGING)
     touches = [
-        swing.touch(method, depth, lead) for depth in OVERSHOOTS for lead in swing.leads(PHASES).tolist()
+        crossing.touch(method, depth, lead)
+        for depth in OVERSHOOTS
+        for lead in crossing.leads(PHASES).tolist()
     ]
     return float(np.mean(np.isnan(touches)))
 

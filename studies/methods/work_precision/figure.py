@@ -1,7 +1,5 @@
 """Figure of the study: methods differ in colour and marker, families in the line, the exact one is a star."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import Any
@@ -10,16 +8,14 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.figure import Figure
 
-from studies.methods.work_precision.measures import Point, Reference
 from studies.methods.work_precision.methods import EXACT, OUTSIDE, PERIODIC, STEPPED
+from studies.methods.work_precision.model import Point, Reference
 from studies.shell import plotting
 from studies.shell.plotting import MARKERS, PALETTE
 
-FLOOR = 1e-17
-"""Errors that vanish are drawn here."""
+FLOOR = 1e-17  # errors that vanish are drawn here
 
-COLOURS = (*PALETTE[1:7], "0.45")
-"""Seven against eight markers: no two methods of a family look alike."""
+COLOURS = (*PALETTE[1:7], "0.45")  # seven against eight markers: no two methods of a family look alike
 
 
 def styles_of(rows: Sequence[Point]) -> dict[str, dict[str, Any]]:
