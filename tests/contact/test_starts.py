@@ -53,7 +53,7 @@ def solved(oscillator, state, power):
         return np.concatenate([y[n:], pull - model.phi * STIFF * depth**power])
 
     start = np.concatenate([state.displacement, state.velocity])
-    return solve_ivp(rates, (0.0, 0.5), start, method="DOP853", rtol=1e-12, atol=1e-15, max_step=2e-3).y[
+    return solve_ivp(rates, (0.0, 0.5), start, method="DOP853", rtol=1e-12, atol=1e-15, max_step=2e-2).y[
         :, -1
     ]
 
