@@ -17,14 +17,13 @@ from itertools import pairwise
 
 import numpy as np
 from orbit_judge import PLACE, Curve, wrong_event, wrong_orbit
-from oscillators import modes_on_stop
+from oscillators import ARRAYS, modes_on_stop
 
 import contact
 from beam import ModalChange
 from contact import ContactError, DelayedRestitution, ImpactOscillator, orbits
 from contact.orbits import Change, Event, PeriodicOrbit, Shooting
 
-ARRAYS = ("omega", "decay_rate", "phi", "participation")
 GAP = 0.01  # m
 
 

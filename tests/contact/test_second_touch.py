@@ -7,17 +7,8 @@ import pytest
 from oscillators import GAMMA, OMEGA, PHI, modes_on_stop, newton, slow
 
 from beam import Point
-from contact import (
-    HertzContact,
-    HuntCrossley,
-    ImpactOscillator,
-    LinearContact,
-    PowerContact,
-    State,
-    Stop,
-    TouchedAtOnce,
-    simulate,
-)
+from contact import ImpactOscillator, PowerContact, State, Stop, TouchedAtOnce, simulate
+from contact.laws import HertzContact, HuntCrossley, LinearContact
 
 LAWS = {
     "linear": LinearContact(stiffness=4e4),
