@@ -1,4 +1,4 @@
-"""What `help` shows: fields and parameters of public names explained; ruff asks for the docstrings."""
+"""What `help` shows: fields and parameters of public names explained; ruff sees that there are docstrings."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ def test_fields_and_parameters_of_public_names_are_explained(package):
     for name in package.__all__:
         thing = getattr(package, name)
         if dataclasses.is_dataclass(thing) and inspect.isclass(thing):
-            told = " ".join(inspect.getdoc(k) or "" for k in thing.__mro__)
+            text = " ".join(inspect.getdoc(k) or "" for k in thing.__mro__)
             wanted = [field.name for field in dataclasses.fields(thing) if not field.name.startswith("_")]
         elif inspect.isfunction(thing):
-            told, wanted = inspect.getdoc(thing) or "", list(inspect.signature(thing).parameters)
+            text, wanted = inspect.getdoc(thing) or "", list(inspect.signature(thing).parameters)
         else:
             continue
-        unexplained += [f"{name}: {part}" for part in wanted if not re.search(rf"\b{part}\b", told)]
+        unexplained += [f"{name}: {part}" for part in wanted if not re.search(rf"\b{part}\b", text)]
     assert not unexplained

@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from calls_of_beam import BEAM, INF, NAN, Entry, strip, told
+from calls_of_beam import BEAM, INF, NAN, Entry, says, strip
 from calls_of_contact import CONTACT, METHODS
 from calls_of_orbits import ORBITS
 from cases_of_calls import USUAL
@@ -132,7 +132,7 @@ def test_the_right_call_is_right_and_raises_no_eyebrow(name: str) -> None:
 @pytest.mark.parametrize(("entry", "field", "value", "error"), ROWS)
 def test_the_sentence_names_the_field_and_the_value(entry: Entry, field: str, value: Any, error: Any) -> None:
     words = None
-    if isinstance(value, told):
+    if isinstance(value, says):
         value, words = value.value, value.words
     found = refusal(entry, field, value, error)
     text = str(found)

@@ -3,7 +3,7 @@
     of(call, right arguments, kind=dict(field=value), value=dict(field=each(value, value)))
 
 `kind` holds values of a wrong kind (TypeError), `value` holds values out of range, not finite or of a wrong
-shape (ValueError).  The message names the field and the value; where it names others, `told` has the words.
+shape (ValueError).  The message names the field and the value; where it names others, `says` has the words.
 `test_wrong_input.py` makes the calls.  With `over`, the right arguments are a function of a case, and
 `contact/test_bounded_calls.py` makes the call for every law of contact too.
 """
@@ -31,7 +31,7 @@ class each(tuple[Any, ...]):
 
 
 @dataclasses.dataclass(frozen=True)
-class told:
+class says:
     """A wrong value and the words of the sentence about it."""
 
     value: object
@@ -134,7 +134,7 @@ BEAM = (
        kind=dict(angle="pi"), value=dict(radius=0.0, angle=0.0)),
     of(beam.Centreline, dict(pieces=(beam.Straight(length=0.1),), start=(0.0, 0.0), heading=0.0),
        kind=dict(pieces=each(3, (0.1,)), start=("a", "b"), heading="east"),
-       value=dict(pieces=told((), "is empty"), start=(0.0,))),
+       value=dict(pieces=says((), "is empty"), start=(0.0,))),
     of(beam.Centreline(pieces=(beam.Straight(length=0.1),)).points, dict(s=[0.05]), name="Centreline, points",
        kind=dict(s="end"), value=dict(s=each(0.2, [NAN]))),
     of(beam.Tip, dict(mass=0.004, rotary_inertia=0.0),
@@ -143,27 +143,27 @@ BEAM = (
        kind=dict(at="middle"), value=dict(at=-0.05, quantity="velocity")),
     of(beam.LeafSpring, lambda: fields_of(spring()),
        kind=dict(centreline=0.28, sections=3, tip=0.004, drive=("x", "y"), readouts={"laser": 0.1},
-                 points=each(0.1, told({"leg": "middle"}, "points['leg'] is 'middle'"),
-                             told({"leg": (0.0, None)}, "point is (0.0, None)")),
-                 between=each(0.1, told({"middle": "pinned"}, "between is 'middle'"))),
+                 points=each(0.1, says({"leg": "middle"}, "points['leg'] is 'middle'"),
+                             says({"leg": (0.0, None)}, "point is (0.0, None)")),
+                 between=each(0.1, says({"middle": "pinned"}, "between is 'middle'"))),
        value=dict(sections=(), supports=each("clamped", ("clamped", ["free"])), tip_at=each(1.0, 0.0),
-                  points=each(told({"tip": 0.1}, "has the name of the tip"),
-                              told({"leg": 9.0}, "points['leg']"),
-                              told({"leg": (0.05, 0.05)}, "m from the centreline"),
-                              told({"leg": 0.0}, "where the strip is clamped")),
-                  between=each(told({0.0: "pinned"}, "between is 0.0 m"), told({0.1: "glued"}, "supports is"),
-                               told({spring().tip_at: "pinned"}, "where the strip is pinned")),
+                  points=each(says({"tip": 0.1}, "has the name of the tip"),
+                              says({"leg": 9.0}, "points['leg']"),
+                              says({"leg": (0.05, 0.05)}, "m from the centreline"),
+                              says({"leg": 0.0}, "where the strip is clamped")),
+                  between=each(says({0.0: "pinned"}, "between is 0.0 m"), says({0.1: "glued"}, "supports is"),
+                               says({spring().tip_at: "pinned"}, "where the strip is pinned")),
                   drive=(0.0, 0.0))),
     of(beam.folded_u,
        lambda: dict(leg_length=0.13, bend_radius=0.0075, section=strip(), tip=beam.Tip(mass=0.004)),
-       kind=dict(bend_radius=told("tight", "radius is 'tight'"), tip=None, damped_section=0.45e-3,
-                 section=told(beam.BRASS, "sections is Material")),
-       value=dict(leg_length=told(0.0, "length of the straight strip or leg is 0.0 m"),
-                  bend_radius=told(0.0003, "radius is 0.0003 m"), damped_span=(0.0, 0.1))),
+       kind=dict(bend_radius=says("tight", "radius is 'tight'"), tip=None, damped_section=0.45e-3,
+                 section=says(beam.BRASS, "sections is Material")),
+       value=dict(leg_length=says(0.0, "length of the straight strip or leg is 0.0 m"),
+                  bend_radius=says(0.0003, "radius is 0.0003 m"), damped_span=(0.0, 0.1))),
     of(beam.flat_u,
        lambda: dict(leg_length=0.13, bend_radius=0.0075, section=strip(), tip=beam.Tip(mass=0.004)),
        kind=dict(bend_radius="tight", tip=None, damped_section=0.45e-3, section=beam.BRASS),
-       value=dict(leg_length=told(0.0, "length of the straight strip or leg is 0.0 m"),
+       value=dict(leg_length=says(0.0, "length of the straight strip or leg is 0.0 m"),
                   bend_radius=each(0.006, NAN), damped_span=(0.0, 0.1))),
     of(beam.straight_strip,
        lambda: dict(length=0.13, section=strip(), supports=("clamped", "free"), tip_at=0.13),
@@ -173,15 +173,15 @@ BEAM = (
        name="straight_strip, damped",
        kind=dict(damped_span=(0.0, "end")), value=dict(damped_span=(0.1, 0.05))),
     of(beam.cantilever, lambda: dict(length=0.13, section=strip()),
-       kind=dict(section=told(None, "sections is None"), tip=0.004, readouts=[0.1]),
-       value=dict(length=0, readouts=told({"far": beam.Readout(at=0.2)}, "readouts['far'] is 0.2 m"))),
+       kind=dict(section=says(None, "sections is None"), tip=0.004, readouts=[0.1]),
+       value=dict(length=0, readouts=says({"far": beam.Readout(at=0.2)}, "readouts['far'] is 0.2 m"))),
     of(beam.assemble, lambda: dict(spring=spring(), elements=4),
        kind=dict(spring=strip()), value=dict(elements=each(0, [4, 4], [4, 2.5, 4], 10**9))),
     of(beam.default_elements, lambda: dict(spring=spring()),
        kind=dict(spring=each(None, 3, "folded_u"))),
     of(beam.backbone_coefficient, lambda: dict(spring=spring(), elements=4),
        kind=dict(spring=each(None, strip())),
-       value=dict(elements=0, spring=told(
+       value=dict(elements=0, spring=says(
            beam.straight_strip(length=0.1, section=strip(), supports=("free", "free"), tip_at=0.1),
            "supports leave 2 motions without strain"))),
     of(beam.periodic_motion, lambda: dict(model=beam.FiniteRotation.of(spring(), 2), amplitude=1e-3,
@@ -190,7 +190,7 @@ BEAM = (
        value=dict(amplitude=each(NAN, 0.0), frequency=0.0, decay_rate=-1.0, harmonics=0)),
     of(beam.Discretization, lambda: fields_of(mesh()),
        kind=dict(spring=None),
-       value=dict(tip=[NAN], mass=np.eye(2), stiffness=told(3.0, "stiffness has shape None"))),
+       value=dict(tip=[NAN], mass=np.eye(2), stiffness=says(3.0, "stiffness has shape None"))),
     of(beam.natural_modes, lambda: dict(discretization=mesh(), count=4),
        kind=dict(discretization=spring()), value=dict(count=each(0, 10**6, 2.5))),
     of(beam.Modes, lambda: fields_of(modes()),
@@ -215,30 +215,30 @@ BEAM = (
        kind=dict(omega=each("150", [150.0, 1j], [True, False]), points=each([1.0], {"tip": [10.0, 9.0]}),
                  dimensionless=each(1, "yes", None)),
        value=dict(omega=[], decay_rate=[-3.0, 9.0], phi=[10.0], participation=[NAN, 1.0], tip_mass=-1.0,
-                  points=told({"laser": beam.Point(row=[1.0])}, "points['laser'] has shape (1,)"))),
+                  points=says({"laser": beam.Point(row=[1.0])}, "points['laser'] has shape (1,)"))),
     of(beam.ModalModel.from_matrices,
        dict(M=np.eye(2), K=[[2.0, -1.0], [-1.0, 2.0]], points={"a": [1.0, 0.0]}, base=[1.0, 1.0], modes=2,
             C=[[0.4, -0.2], [-0.2, 0.4]]),
        kind=dict(M="heavy", points=each([1.0, 0.0], {"a": "end"}), base="up"),
-       value=dict(M=each(told(-np.eye(2), "M is not positive"), told(np.eye(3), "M, 3 unknowns")),
-                  K=each(told([[1.0, 0.5], [0.0, 1.0]], "K has entries 0.5"), told(-np.eye(2), "K and M"),
-                         told([[NAN, 0.0], [0.0, 1.0]], "K holds nan")),
-                  points=each(told({}, "points is empty"), told({"a": [0, 0]}, "['a'] is moved by none"),
-                              told({"a": [1.0]}, "['a'] has shape (1,)")),
-                  base=[1.0], modes=each(0, 3), C=told([[0.0, 0.0], [0.0, 0.4]], "C couples the modes"))),
+       value=dict(M=each(says(-np.eye(2), "M is not positive"), says(np.eye(3), "M, 3 unknowns")),
+                  K=each(says([[1.0, 0.5], [0.0, 1.0]], "K has entries 0.5"), says(-np.eye(2), "K and M"),
+                         says([[NAN, 0.0], [0.0, 1.0]], "K holds nan")),
+                  points=each(says({}, "points is empty"), says({"a": [0, 0]}, "['a'] is moved by none"),
+                              says({"a": [1.0]}, "['a'] has shape (1,)")),
+                  base=[1.0], modes=each(0, 3), C=says([[0.0, 0.0], [0.0, 0.4]], "C couples the modes"))),
     of(lambda count: beam.ModalModel(**MODAL).truncated(count), dict(count=2), name="ModalModel, truncated",
        value=dict(count=each(0, 3))),
     of(beam.ModalModel(**MODAL).load_of, dict(forces={"tip": 0.1}), name="ModalModel, load_of",
-       kind=dict(forces=each(0.1, told({"tip": "soft"}, "forces['tip'] is 'soft'"))),
-       value=dict(forces=each(told({"nose": 0.1}, "forces names 'nose'"),
-                              told({"tip": NAN}, "forces['tip']")))),
+       kind=dict(forces=each(0.1, says({"tip": "soft"}, "forces['tip'] is 'soft'"))),
+       value=dict(forces=each(says({"nose": 0.1}, "forces names 'nose'"),
+                              says({"tip": NAN}, "forces['tip']")))),
     of(lambda **statics: beam.ModalModel(**MODAL, **statics).with_residual_mode(),
        dict(static_compliance=1e-2, tip_mass=0.004), name="ModalModel, with_residual_mode",
-       value=dict(tip_mass=0.0, static_compliance=each(None, told(4.5e-3, "must be above zero and above")))),
+       value=dict(tip_mass=0.0, static_compliance=each(None, says(4.5e-3, "must be above zero and above")))),
     of(lambda phi: dataclasses.replace(
            beam.ModalModel(**MODAL, static_compliance=1e-2, tip_mass=0.004), phi=phi),  # type: ignore[arg-type]
        dict(phi=[-10.0, 9.0]), name="ModalModel, at another point",
-       value=dict(phi=told([5.0, -3.0], "static_compliance is 0.01 m/N, which belongs to"))),
+       value=dict(phi=says([5.0, -3.0], "static_compliance is 0.01 m/N, which belongs to"))),
     of(beam.single_mode, dict(free_period=40.8e-3, decay_rate=3.56),
        kind=dict(free_period="40.8 ms"), value=dict(free_period=0.0, decay_rate=-3.56)),
     of(beam.ModalChange, lambda: dict(MODAL),
@@ -247,10 +247,10 @@ BEAM = (
     of(beam.decay_rate_change, lambda: dict(model=one_mode(), mode=0), kind=dict(model="no"),
        value=dict(mode=each(1, -1))),
     of(beam.tip_mass_change, lambda: dict(model=beam.ModalModel(**MODAL)), kind=dict(model=each("no", None)),
-       value=dict(model=told(beam.ModalModel(**MODAL | dict(omega=[9.0, 9.0])), "omega is [9. 9.] rad/s; "))),
+       value=dict(model=says(beam.ModalModel(**MODAL | dict(omega=[9.0, 9.0])), "omega is [9. 9.] rad/s; "))),
     of(beam.with_tip_mass, lambda: dict(model=beam.ModalModel(**MODAL, tip_mass=0.004), mass=0.003),
        kind=dict(model="no", mass="3 g"),
-       value=dict(model=told(one_mode(), "tip_mass is None kg"), mass=each(-1.0, 0.0))),
+       value=dict(model=says(one_mode(), "tip_mass is None kg"), mass=each(-1.0, 0.0))),
     of(lambda mass: beam.with_tip_mass(
            beam.ModalModel(**MODAL | dict(phi=[10.0, 19.0]), tip_mass=0.004), mass),  # type: ignore[arg-type]
        dict(mass=0.004), name="with_tip_mass, of modes that need more", value=dict(mass=1e-4)),

@@ -30,7 +30,7 @@ def leaf(thickness: float = 0.7e-3, mass: float = 0.0) -> LeafSpring:
 
 
 def hook() -> LeafSpring:
-    """A leg and a bend of 100 degrees: swings of either sign differ."""
+    """A leg and a bend of 100 degrees: motions to either side differ."""
     line = beam.Centreline(pieces=(beam.Straight(length=LEG), beam.Arc(radius=0.03, angle=1.75)))
     others = dict(sections=(STRIP, STRIP), supports=("clamped", "free"), tip=Tip(mass=5e-3))
     return LeafSpring(centreline=line, tip_at=line.length, **others)
@@ -111,13 +111,13 @@ def test_coupling_of_a_narrow_u_with_a_heavy_tip() -> None:
 
 @pytest.mark.parametrize("drawn", [pytest.param(folded_u, marks=pytest.mark.slow), leaf, hook])
 def test_backbone_against_harmonic_balance(drawn: Callable[[], LeafSpring]) -> None:
-    """Swings to either side, their amplitudes falling by half, to the limit of both."""
+    """Motions to either side, their amplitudes falling by half, to the limit of both."""
     model, backbone = FiniteRotation.of(drawn(), 12), backbone_coefficient(drawn(), 12)
     first, shifts = periodic_motion(model, 1e-6).omega, []
     for amplitude in (2e-3, 4e-3):
-        swings = [periodic_motion(model, side * amplitude, harmonics=3) for side in (1, -1)]
-        assert max(abs(swing.decay_rate) for swing in swings) < 1e-8
-        faster = np.mean([swing.omega for swing in swings]) / first - 1.0
+        motions = [periodic_motion(model, side * amplitude, harmonics=3) for side in (1, -1)]
+        assert max(abs(motion.decay_rate) for motion in motions) < 1e-8
+        faster = np.mean([motion.omega for motion in motions]) / first - 1.0
         shifts.append(faster * (backbone.length / amplitude) ** 2)
     assert (4 * shifts[0] - shifts[1]) / 3 == pytest.approx(backbone.kappa, rel=2e-4, abs=1e-6)
 
@@ -126,12 +126,11 @@ def test_mesh_of_the_backbone() -> None:
     """The default mesh is good to 1e-5; half the elements are ten times as far off, as the arc's h^4 says."""
     meshes = (240, 96, 240), None, (60, 24, 60)
     fine, default, half = (backbone_coefficient(folded_u(), mesh).kappa for mesh in meshes)
-    assert default == pytest.approx(fine, rel=3e-5)
-    assert 8 < (half - fine) / (default - fine) < 32
+    assert default == pytest.approx(fine, rel=3e-5) and 8 < (half - fine) / (default - fine) < 32
 
 
 def test_harmonic_balance_against_time_integration() -> None:
-    """A swing of the U comes back after the period found: implicit midpoint rule, steps to the limit."""
+    """The U comes back after the period found: implicit midpoint rule, steps to the limit."""
     model = FiniteRotation.of(folded_u(), 2)
     motion = periodic_motion(model, 6e-3, harmonics=7)
     mass = model.linear.mass.toarray()

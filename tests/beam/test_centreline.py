@@ -36,5 +36,4 @@ def test_u_comes_back_alongside() -> None:
     u = Centreline(pieces=(Straight(length=0.13), Arc(radius=0.0075, angle=math.pi), Straight(length=0.13)))
     np.testing.assert_allclose(u.points(u.length), [0.0, 0.015, 0.0], atol=1e-16)
     np.testing.assert_allclose(u.points(0.5 * u.length), [0.1375, 0.0075, 0.0], atol=1e-16)
-    assert u.points(np.zeros((2, 3))).shape == (2, 3, 3)
-    assert not u.is_straight
+    assert u.points(np.zeros((2, 3))).shape == (2, 3, 3) and not u.is_straight

@@ -80,9 +80,8 @@ def test_static_compliance_of_the_u_by_castigliano() -> None:
         along = fy * np.cos(turn) + fx * np.sin(turn)
         in_bend = radius * (fy * (1.0 - np.cos(turn)) - fx * np.sin(turn)), along
         in_leg = fy * (radius + x) - fx * radius, np.full_like(x, fx)
-        moment, force = (
-            radius * np.trapezoid(in_bend[i] ** 2, turn) + np.trapezoid(in_leg[i] ** 2, x) for i in range(2)
-        )
+        pairs = zip(in_bend, in_leg, strict=True)
+        moment, force = (radius * np.trapezoid(a**2, turn) + np.trapezoid(b**2, x) for a, b in pairs)
         return 0.5 * (moment / STRIP.bending_stiffness + force / STRIP.axial_stiffness)
 
     along, across = energy(1.0, 0.0), energy(0.0, 1.0)
@@ -100,8 +99,7 @@ def test_ring_segment_between_guides(turn: float) -> None:
     radius = 0.05
     line = beam.Centreline(pieces=(beam.Arc(radius=radius, angle=turn),))
     others = dict(sections=(STRIP,), supports=("guided", "guided"), tip=beam.Tip(), tip_at=0.0)
-    spring = beam.LeafSpring(centreline=line, **others)
-    expected = []
+    spring, expected = beam.LeafSpring(centreline=line, **others), []
     for n in np.pi / turn * np.arange(30):
         stretch, bend = np.array([n, -1.0]) / radius, n * np.array([1.0, -n]) / radius**2
         k = STRIP.axial_stiffness * np.outer(stretch, stretch)
@@ -123,8 +121,7 @@ def test_elements_converge_at_fourth_order_on_the_arc() -> None:
 
 def test_shapes_along_the_centreline() -> None:
     modes = u_of(15e-3)
-    along = modes.displacement_along(4)
-    spring = modes.discretization.spring
+    along, spring = modes.displacement_along(4), modes.discretization.spring
     assert along.displacement.shape == (20, along.s.size, 3) and along.rotation.shape == (20, along.s.size)
     assert np.all(np.diff(along.s) > 0.0) and along.s[0] == 0.0 and along.s[-1] == spring.centreline.length
     np.testing.assert_allclose(along.displacement[:, [0, -1]], 0.0, atol=1e-9)

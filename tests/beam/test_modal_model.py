@@ -26,10 +26,8 @@ def test_single_mode_is_equation_1() -> None:
     """Integrated numerically, the free motion returns after T, smaller by exp(-mu T / 2)."""
     model = beam.single_mode(free_period=40.80e-3, decay_rate=3.56)
     assert model.n_modes == 1 and model.phi[0] == model.participation[0] == 1.0
-    start, rates = (
-        np.array([1e-3, 0.2]),
-        np.array([[0.0, 1.0], [-(model.omega[0] ** 2), -model.decay_rate[0]]]),
-    )
+    start = np.array([1e-3, 0.2])
+    rates = np.array([[0.0, 1.0], [-(model.omega[0] ** 2), -model.decay_rate[0]]])
     path = solve_ivp(lambda t, y: rates @ y, (0.0, 40.80e-3), start, rtol=1e-11, atol=1e-14)
     np.testing.assert_allclose(path.y[:, -1], np.exp(-0.5 * 3.56 * 40.80e-3) * start, rtol=1e-7)
 
@@ -59,7 +57,7 @@ def test_truncated() -> None:
     assert [short.points[name].static_compliance for name in ("laser", "tip")] == [3.0, 1.0]
 
 
-def test_a_lowest_mode_that_hardly_swings_is_told() -> None:
+def test_a_lowest_mode_that_hardly_oscillates_is_warned_of() -> None:
     with pytest.warns(beam.SuspiciousValue, match="decay_rate"):
         beam.ModalModel(**(THREE | {"decay_rate": [1.1, 0.0, 0.0]}))
     with warnings.catch_warnings():
@@ -111,8 +109,7 @@ def test_floating_strip_has_no_static_compliance() -> None:
 
 
 def test_the_package_keeps_its_word() -> None:
-    assert doctest.testmod(beam).failed == 0
-    assert set(beam.__all__) <= set(dir(beam))
+    assert doctest.testmod(beam).failed == 0 and set(beam.__all__) <= set(dir(beam))
     with pytest.raises(AttributeError, match="drum"):
         _ = beam.drum
 

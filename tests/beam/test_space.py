@@ -112,8 +112,7 @@ def test_sideways_bending_of_a_straight_strip_is_that_of_the_frequency_equation(
     strip = dict(bending_stiffness=section.out_of_plane_stiffness, mass_per_length=section.mass_per_length)
     uniform = beam.UniformBeam(length=LENGTH, **strip, **body)
     modes = spatial_modes(straight(section, tip, drive=(0.0, 0.0, 1.0)), 30)
-    moves = modes.phi > 1e-6
-    exact = beam.exact_modes(uniform, 3)
+    moves, exact = modes.phi > 1e-6, beam.exact_modes(uniform, 3)
     np.testing.assert_allclose(modes.omega[moves][:3], exact.omega, rtol=1e-6)
     np.testing.assert_allclose(modes.phi[moves][:3], exact.phi, rtol=1e-5)
     np.testing.assert_allclose(np.abs(modes.participation[moves][:3]), np.abs(exact.participation), rtol=1e-5)
@@ -153,8 +152,7 @@ def test_the_u_in_space_against_many_straight_elements(lying, offset):
 def test_a_ball_on_the_plane_of_symmetry_sees_one_family_and_off_it_both():
     on, off = (spatial_modes(bent(upright(STRIP), tip_offset=(0.0, 0.0, z)), 12) for z in (0.0, 5e-4))
     apart = out_of_plane(on)
-    assert apart.sum() >= 2
-    assert np.abs(on.phi[apart]).max() < 1e-4 * on.phi[0]
+    assert apart.sum() >= 2 and np.abs(on.phi[apart]).max() < 1e-4 * on.phi[0]
     assert np.abs(on.participation[apart]).max() < 1e-4 * abs(on.participation[0])
     assert np.abs(off.phi[apart]).max() > 1e-3 * on.phi[0]
     assert off.frequencies_hz[0] == pytest.approx(on.frequencies_hz[0], rel=1e-4)
@@ -173,8 +171,7 @@ def test_shapes_are_those_of_the_section_at_the_tip_and_mass_normalised():
     np.testing.assert_allclose(displacement[:, place], modes.displacement, atol=1e-9)
     np.testing.assert_allclose(rotation[:, place], modes.rotation, atol=1e-6)
     assert points.shape == (s.size, 3) and s[0] == 0.0 and s[-1] == pytest.approx(U.length)
-    section = modes.spring.sections[0]
-    t = U.frame(s)[0]
+    section, t = modes.spring.sections[0], U.frame(s)[0]
     turn = np.einsum("kpi,pi->kp", rotation, t)
     energy = section.mass_per_length * np.sum(displacement**2, axis=2) + section.polar_inertia * turn**2
     np.testing.assert_allclose(np.trapezoid(energy, s, axis=1), 1.0, rtol=2e-3)
@@ -182,8 +179,7 @@ def test_shapes_are_those_of_the_section_at_the_tip_and_mass_normalised():
 
 def test_a_channel_without_flanges_is_the_strip_but_for_its_edges():
     section = channel(material=BRASS, width=12e-3, flange=0.0, thickness=0.65e-3)
-    strip = upright(STRIP)
-    edges = 1.0 - 0.63 * 0.65 / 12.0
+    strip, edges = upright(STRIP), 1.0 - 0.63 * 0.65 / 12.0
     for name, number in vars(strip).items():
         digits, part = (1e-4, edges) if name == "torsional_stiffness" else (1e-12, 1.0)
         assert number == pytest.approx(part * getattr(section, name), rel=digits), name

@@ -4,7 +4,7 @@ import dataclasses
 from functools import cache
 
 import numpy as np
-from calls_of_beam import INF, NAN, each, fields_of, of, told
+from calls_of_beam import INF, NAN, each, fields_of, of, says
 from cases_of_calls import GAP, HERTZ, NEWTON
 
 import beam
@@ -36,8 +36,7 @@ def closed_forms(oscillator: contact.ImpactOscillator) -> None:
     family = contact.MaximalFamily.from_oscillator(oscillator, period=5)
     fold = family.fold()
     assert fold is not None and family.orbits(0.01)
-    assert family.orbit(0.1).state().time == family.orbit(0.1).phase
-    assert family.excess(1e-3) < 1.0
+    assert family.orbit(0.1).state().time == family.orbit(0.1).phase and family.excess(1e-3) < 1.0
     assert fold.monodromy().shape == (2 * oscillator.n_modes, 2 * oscillator.n_modes)
 
 
@@ -47,12 +46,12 @@ def at(displacement: float, regime: Regime = Regime.OUTSIDE, time: float = 0.0) 
     return contact.State(displacement=[q], velocity=[0.0], regime=regime, time=time)
 
 
-OFF_STROBE = told(at(0.0, time=1e-3), "time of the state is 0.001 s")
-THREE_MODES = told(contact.State.rest(3), "displacement of the state has 3 modes")
-LOADED = told(dataclasses.replace(EQ_1, load=np.array([1.0])), "load is given")
+OFF_STROBE = says(at(0.0, time=1e-3), "time of the state is 0.001 s")
+THREE_MODES = says(contact.State.rest(3), "displacement of the state has 3 modes")
+LOADED = says(dataclasses.replace(EQ_1, load=np.array([1.0])), "load is given")
 TWO = dataclasses.replace(EQ_1, stops=(EQ_1.stop, dataclasses.replace(EQ_1.stop, side=-1)))
-TWO_STOPS = told(TWO, "stops has 2 entries")
-UNDRIVEN = told(dataclasses.replace(EQ_1, drive=None), "drive is None")
+TWO_STOPS = says(TWO, "stops has 2 entries")
+UNDRIVEN = says(dataclasses.replace(EQ_1, drive=None), "drive is None")
 FINAL = (
     beam.ModalChange,
     beam.ModalModel,
@@ -82,7 +81,7 @@ METHODS_USED = (
 # fmt: off
 CONTACT = (
     of(lambda parent: type("Own", (parent,), {}), dict(parent=contact.ContactLaw), name="final classes",
-       kind=dict(parent=each(*(told(one, f"is a subclass of {one.__name__};") for one in FINAL)))),
+       kind=dict(parent=each(*(says(one, f"is a subclass of {one.__name__};") for one in FINAL)))),
     of(contact.HarmonicDrive, dict(frequency=22.2, amplitude=1e-3),
        kind=dict(frequency="22.2 Hz"), value=dict(frequency=0.0, amplitude=-1e-3)),
     of(contact.Stop, dict(gap=0.0107, law=contact.NewtonRestitution(local_restitution=0.1)),
@@ -90,25 +89,25 @@ CONTACT = (
        value=dict(gap=-0.01, side=each(0, 2, "up"), at=("tip", "tip"))),
     of(contact.NewtonRestitution, dict(local_restitution=0.1),
        kind=dict(local_restitution=each("0.1", None, [[0, 1], [0.1]],
-                                        told(lambda v: "soft", "m/s is 'soft'"))),
+                                        says(lambda v: "soft", "m/s is 'soft'"))),
        value=dict(local_restitution=each(1.1, 1.0000001, -1e-12, NAN, [0.1], [[1], [0.1]],
                                          [[2, 1], [0.1, 0.2]], [[-1, 1], [0.1, 0.2]],
-                                         told([[0, 1e-320], [0, 1]], "1e-320"),
-                                         told([[0, 1], [0.1, NAN]], "local_restitution holds nan"),
-                                         told([[0, 1], [0.1, 1.2]], "1 m/s is 1.2"),
-                                         told([[0, 1e-3], [0, 1e308]], "0.001 m/s is 1e+308"),
-                                         told(lambda v: 1.2 - v, "1e-05 m/s is 1.19999"),
-                                         told(lambda v: NAN, "m/s is nan")),
+                                         says([[0, 1e-320], [0, 1]], "1e-320"),
+                                         says([[0, 1], [0.1, NAN]], "local_restitution holds nan"),
+                                         says([[0, 1], [0.1, 1.2]], "1 m/s is 1.2"),
+                                         says([[0, 1e-3], [0, 1e308]], "0.001 m/s is 1e+308"),
+                                         says(lambda v: 1.2 - v, "1e-05 m/s is 1.19999"),
+                                         says(lambda v: NAN, "m/s is nan")),
                   speeds=each((1.0, 1.0), (0.0, 1.0)))),
     of(contact.DelayedRestitution, dict(restitution=0.1, delay=1e-4),
-       kind=dict(restitution=each("soft", None, told(lambda v: "soft", "m/s is 'soft'")),
+       kind=dict(restitution=each("soft", None, says(lambda v: "soft", "m/s is 'soft'")),
                  delay=each("late", None, [1e-4])),
        value=dict(restitution=each(2.0, 1.0000001, -0.01, -1e-12, NAN,
-                                   told(lambda v: 1.2 - v, "restitution runs from"),
-                                   told(lambda v: 0.5 if v < 1 else NAN, "restitution")),
-                  delay=each(-1e-9, NAN, INF, told(lambda v: 1e-4 - v, "delay"),
-                             told(lambda v: INF, "delay")),
-                  speeds=each(told(3.0, "speeds has shape ()"), (1.0,), (1.0, 1.0), (0.0, 1.0), (1.0, NAN)))),
+                                   says(lambda v: 1.2 - v, "restitution runs from"),
+                                   says(lambda v: 0.5 if v < 1 else NAN, "restitution")),
+                  delay=each(-1e-9, NAN, INF, says(lambda v: 1e-4 - v, "delay"),
+                             says(lambda v: INF, "delay")),
+                  speeds=each(says(3.0, "speeds has shape ()"), (1.0,), (1.0, 1.0), (0.0, 1.0), (1.0, NAN)))),
     of(contact.LinearContact, dict(stiffness=1e6, damping=0.0),
        kind=dict(stiffness=None, damping=None),
        value=dict(stiffness=each(0, 0.0, -1.0), damping=each(-1.0, -1e-300))),
@@ -148,16 +147,16 @@ CONTACT = (
        name="HuntCrossley.with_restitution, elastic", value=dict(stiffness=each(0, -1.0))),
     of(contact.ImpactOscillator, lambda: fields_of(EQ_1),
        kind=dict(model=None, stop=0.0107, drive=22.2, load=["a"]),
-       value=dict(stop=told(dataclasses.replace(HERTZ.oscillator.stop, gap=0.0), "gap is 0.0 m"),
+       value=dict(stop=says(dataclasses.replace(HERTZ.oscillator.stop, gap=0.0), "gap is 0.0 m"),
                   load=[1.0, 2.0])),
     of(contact.ImpactOscillator, lambda: dict(model=EQ_1.model, stops=TWO.stops),
        name="ImpactOscillator, stops", kind=dict(stops=each(EQ_1.stop, [0.1])),
-       value=dict(stop=told(EQ_1.stop, "stop and stops are both given"),
-                  stops=each(told([], "at least one Stop"), told(None, "stop is missing"),
-                             told(2 * [EQ_1.stop], "lie at one place"),
-                             told([dataclasses.replace(EQ_1.stop, gap=0.0, side=x) for x in (1, -1)],
+       value=dict(stop=says(EQ_1.stop, "stop and stops are both given"),
+                  stops=each(says([], "at least one Stop"), says(None, "stop is missing"),
+                             says(2 * [EQ_1.stop], "lie at one place"),
+                             says([dataclasses.replace(EQ_1.stop, gap=0.0, side=x) for x in (1, -1)],
                                   "from both sides"),
-                             told([dataclasses.replace(EQ_1.stop, at="nose")], "at is 'nose'")))),
+                             says([dataclasses.replace(EQ_1.stop, at="nose")], "at is 'nose'")))),
     of(lambda excess: EQ_1.with_excess(excess), dict(excess=1e-3), name="ImpactOscillator.with_excess",
        kind=dict(excess="0.1 %"), value=dict(excess=each(-1.0, NAN))),
     of(lambda amplitude: EQ_1.with_amplitude(amplitude), dict(amplitude=1e-3),
@@ -167,26 +166,26 @@ CONTACT = (
        value=dict(values=each("tip", contact.State.rest(1), [0.0, 1.0], 0.0, [[0.0], [0.0, 1.0]]))),
     of(contact.State, START | dict(time=0.0, regime=0, wait=0.0, rebound=0.0),
        kind=dict(displacement="rest"), value=dict(displacement=each([], [NAN]),
-                  velocity=each([0.0, 1.0], told([[0.0]], "velocity of the state")),
+                  velocity=each([0.0, 1.0], says([[0.0]], "velocity of the state")),
                   regime=each(7, -1, 5, 17), time=NAN, stop=each(-1, 0.5))),
     of(contact.State.rest, dict(n_modes=2),
        kind=dict(n_modes="two"), value=dict(n_modes=each(0, 1.5))),
     of(contact.simulate, lambda c: dict(oscillator=c.driven, state=c.state, periods=5,
                                         times=np.linspace(0.0, 0.2, 50)), over="starts",
        kind=dict(oscillator=None, state=[0.0, 0.0], times="now", method=3),
-       value=dict(periods=each(0, -2, 1.5, told(None, "duration and periods")),
-                  times=told([0.02, 0.01], "times is [0.02, 0.01] s"), method="magic",
-                  state=each(THREE_MODES, told(at(1.0), "m behind the stop"),
-                             *(told(at(x, regime), "regime") for x, regime in WRONG_REGIMES)))),
+       value=dict(periods=each(0, -2, 1.5, says(None, "duration and periods")),
+                  times=says([0.02, 0.01], "times is [0.02, 0.01] s"), method="magic",
+                  state=each(THREE_MODES, says(at(1.0), "m behind the stop"),
+                             *(says(at(x, regime), "regime") for x, regime in WRONG_REGIMES)))),
     *(of(contact.simulate, lambda c, method=method: dict(
              oscillator=c.driven, state=c.fast, periods=2, method=method),
          name=f"simulate, {type(method).__name__}", over="motion") for method in METHODS_USED),
     of(contact.simulate, lambda: dict(oscillator=EQ_1, duration=1.0), name="simulate, for a duration",
        kind=dict(duration="1 s"),
-       value=dict(duration=each(0.0, -1.0, NAN, told(1e12, "duration is 1e+12 s")),
-                  periods=told(3, "duration and periods"),
-                  times=each(told([0.2, NAN], "times holds nan s"), told([[0.2]], "times has shape"),
-                             told([0.5, 1.1], "times run from"), told([-0.1, 0.5], "times run from")))),
+       value=dict(duration=each(0.0, -1.0, NAN, says(1e12, "duration is 1e+12 s")),
+                  periods=says(3, "duration and periods"),
+                  times=each(says([0.2, NAN], "times holds nan s"), says([[0.2]], "times has shape"),
+                             says([0.5, 1.1], "times run from"), says([-0.1, 0.5], "times run from")))),
     of(contact.StroboscopicMap, lambda: dict(oscillator=EQ_1), kind=dict(oscillator=3),
        value=dict(oscillator=TWO_STOPS)),
     of(MAP.at, lambda c: dict(self=c.strobed, excess=0.1), over="motion", value=dict(excess=-2.0)),
@@ -222,7 +221,7 @@ CONTACT = (
        dict(omega=154.0, decay_rate=3.56, drive_frequency=22.2, restitution=0.1, delay=0.0),
        value=dict(omega=-154.0, delay=-1e-3, restitution=NAN)),
     of(contact.NordmarkMap.from_oscillator, lambda: dict(oscillator=EQ_1),
-       kind=dict(oscillator=each(3, told(HERTZ.oscillator, "law of the stop is HertzContact"))),
+       kind=dict(oscillator=each(3, says(HERTZ.oscillator, "law of the stop is HertzContact"))),
        value=dict(oscillator=each(UNDRIVEN, TWO_STOPS))),
     of(lambda state, rho, count: nordmark().iterate(state, rho, count),
        dict(state=[0.0, 0.0], rho=0.01, count=3), name="NordmarkMap.iterate",
@@ -243,7 +242,7 @@ CONTACT = (
        kind=dict(oscillator=each(None, "beam")), value=dict(oscillator=each(UNDRIVEN, TWO_STOPS))),
     of(contact.first_collision, lambda c: dict(oscillator=c.driven, state=c.state, periods=5), over="starts",
        kind=dict(oscillator=3, state="rest"),
-       value=dict(periods=0, oscillator=told(EQ_1.with_excess(-0.5), "periods is 5"))),
+       value=dict(periods=0, oscillator=says(EQ_1.with_excess(-0.5), "periods is 5"))),
     of(contact.first_collision, lambda c: dict(oscillator=c.oscillator), name="first_collision, at rest",
        over="motion"),
     of(closed_forms, lambda c: dict(oscillator=c.oscillator), name="MaximalFamily.from_oscillator",
@@ -251,21 +250,21 @@ CONTACT = (
     of(contact.MaximalFamily.from_oscillator, lambda: dict(oscillator=EQ_1, period=3, restitution=0.1),
        name="MaximalFamily.from_oscillator, refused",
        kind=dict(oscillator=None),
-       value=dict(period=0, restitution=told(-0.1, "restitution is -0.1"),
+       value=dict(period=0, restitution=says(-0.1, "restitution is -0.1"),
                   oscillator=each(UNDRIVEN, LOADED, TWO_STOPS))),
     of(lambda period, speed, rho, excess: (
            contact.MapFamily(nordmark(), period).orbit(speed),
            contact.MapFamily(nordmark(), period).at_rho(rho),
            contact.MapFamily(nordmark(), period).orbits(excess)),
        dict(period=4, speed=0.1, rho=0.01, excess=0.01), name="MapFamily",
-       kind=dict(excess="1"), value=dict(period=0, speed=told(0.0, "speed is 0.0 [1]"), rho=NAN)),
+       kind=dict(excess="1"), value=dict(period=0, speed=says(0.0, "speed is 0.0 [1]"), rho=NAN)),
     of(lambda speed: closed().orbit(speed), dict(speed=0.1), name="MaximalFamily.orbit",
        kind=dict(speed="fast"), value=dict(speed=each(0.0, NAN))),
     of(lambda excess: closed().orbits(excess), dict(excess=1e-3), name="MaximalFamily.orbits",
        kind=dict(excess=[1e-3]), value=dict(excess=each(-1.0, INF))),
 )
 
-STEPS = each(0.0, NAN, told("1 us", "step is "))
+STEPS = each(0.0, NAN, says("1 us", "step is "))
 
 METHODS = (
     of(integrators.CentralDifference, dict(step=1e-6), value=dict(step=STEPS)),
@@ -273,7 +272,7 @@ METHODS = (
     of(integrators.GeneralisedAlpha, dict(step=1e-6, beta=0.25),
        value=dict(step=STEPS, beta=-1.0, gamma=0.0, alpha_m=1.0, alpha_f=NAN)),
     of(integrators.GeneralisedAlpha.hht, dict(step=1e-6, alpha=0.1),
-       value=dict(step=STEPS, alpha=told(-0.1, "HHT-alpha"))),
+       value=dict(step=STEPS, alpha=says(-0.1, "HHT-alpha"))),
     of(integrators.GeneralisedAlpha.with_dissipation, dict(step=1e-6, rho=0.8),
        value=dict(step=STEPS, rho=each(1.1, -0.1))),
     of(integrators.MoreauJean, dict(step=1e-6, theta=0.5), value=dict(step=STEPS, theta=2.0)),

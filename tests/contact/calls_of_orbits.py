@@ -3,7 +3,7 @@
 import dataclasses
 
 import numpy as np
-from calls_of_beam import INF, NAN, each, of, told
+from calls_of_beam import INF, NAN, each, of, says
 from calls_of_contact import EQ_1, LOADED, OFF_STROBE, THREE_MODES, TWO_STOPS, UNDRIVEN, at, nordmark
 from cases_of_calls import GAP, HERTZ, NEWTON
 
@@ -12,20 +12,20 @@ from contact import Regime, orbits
 from contact.touch.passage import Touches
 
 # an orbit of another period, of the same one with more touches, and of an oscillator with another gap
-P4 = told(dataclasses.replace(HERTZ.family, period=4).at_speed(0.1), "has 4 drive periods; it must have 5")
-TWICE = told(
+P4 = says(dataclasses.replace(HERTZ.family, period=4).at_speed(0.1), "has 4 drive periods; it must have 5")
+TWICE = says(
     dataclasses.replace(HERTZ.orbit, record=Touches(*(np.repeat(each, 2, 0) for each in HERTZ.orbit.record))),
     "has 2 touches",
 )
 WIDER = dataclasses.replace(HERTZ.oscillator, stop=contact.Stop(gap=0.0108, law=HERTZ.oscillator.stop.law))
-FOREIGN = told(
+FOREIGN = says(
     dataclasses.replace(HERTZ.family, oscillator=WIDER).at_speed(HERTZ.speed),
     "oscillator of the start is not",
 )
 
 
 CHANGE = orbits.Change(gap=1.0, frequency=1e3)
-IDLE = told(
+IDLE = says(
     dataclasses.replace(EQ_1, model=dataclasses.replace(EQ_1.model, participation=[0.0])),
     "the drive does not move the tip",
 )
@@ -84,9 +84,9 @@ ORBITS = (
     of(orbits.follow, lambda c: dict(family=c.family, start=c.orbit, low=0.5 * c.speed, high=2.0 * c.speed,
                                      step=0.3), over="speeds",
        kind=dict(family=None, start=0.1),
-       value=dict(low=each(told(0.2, "low and high are 0.2 and"), told(0.0, "low and high are 0.0 and")),
-                  start=each(P4, TWICE, FOREIGN), high=told(0.06, "low and high are"),
-                  step=told(0.0, "step is 0.0 [1]"))),
+       value=dict(low=each(says(0.2, "low and high are 0.2 and"), says(0.0, "low and high are 0.0 and")),
+                  start=each(P4, TWICE, FOREIGN), high=says(0.06, "low and high are"),
+                  step=says(0.0, "step is 0.0 [1]"))),
     of(orbits.first_event, lambda c: dict(family=c.family, start=c.orbit, lowest=-0.5), over="family",
        kind=dict(family=None, start=0.1), value=dict(lowest=-1.5, start=each(P4, TWICE, FOREIGN))),
     of(orbits.fold_of, lambda c: dict(family=c.family), over="family", kind=dict(family=NO_FAMILY, near=0.1),
@@ -99,8 +99,8 @@ ORBITS = (
            path=c.oscillator.with_excess, start=c.orbit, at=c.orbit.excess, low=c.orbit.excess,
            high=c.orbit.excess + 0.05, step=1.0), over="family",
        kind=dict(start=0.1), value=dict(
-           path=told(None, "path is None; it must be a function"), at=told(0.3, "at is 0.3 [of p]"),
-           low=NAN, high=told(-0.2, "high is -0.2 [of p]"), step=told(0.0, "step is 0.0 [1]"))),
+           path=says(None, "path is None; it must be a function"), at=says(0.3, "at is 0.3 [of p]"),
+           low=NAN, high=says(-0.2, "high is -0.2 [of p]"), step=says(0.0, "step is 0.0 [1]"))),
     of(orbits.Change, dict(gap=1.0, frequency=0.0, amplitude=0.0, law=(0.0, 0.0)),
        kind=dict(model=EQ_1.model, law=each("soft", ("1", 0.0))), value=dict(law=each((1.0,), (NAN, 0.0)))),
     *(of(call, lambda c: dict(orbit=c.orbit, changes=[CHANGE]), name=name, over="family",
@@ -109,7 +109,7 @@ ORBITS = (
     of(orbits.motion_derivatives, lambda c: dict(
            oscillator=c.driven, state=c.state, changes=[CHANGE], periods=3, times=np.linspace(0.01, 0.1, 5)),
        over="starts", kind=dict(oscillator=None, state=[0.0], changes=each(CHANGE, [3.0])),
-       value=dict(oscillator=each(UNDRIVEN, TWO_STOPS), state=told(at(GAP, Regime.CONTACT), "regime"))),
+       value=dict(oscillator=each(UNDRIVEN, TWO_STOPS), state=says(at(GAP, Regime.CONTACT), "regime"))),
     *(of(orbits.settle, lambda c, prove=prove: dict(
              strobed=c.strobed, state=c.state, most_cycles=256, largest_period=64, tolerance=1e-9,
              prove=prove),
@@ -128,20 +128,20 @@ ORBITS = (
     of(orbits.orbit_diagram, lambda c: dict(
            strobed=c.strobed, excesses=[1e-3, -1e-3], state=c.state, observe=c.strobed.tip, settle_cycles=128,
            record_cycles=40, largest_period=64), over="starts",
-       kind=dict(strobed=EQ_1, excesses="1", observe=each(3, told(lambda p: "tip", "observe(points) is"))),
-       value=dict(observe=told(lambda p: p, "observe(points) has shape"), settle_cycles=-1,
-                  excesses=each(told([], "excesses is empty"), [[1e-3]]))),
+       kind=dict(strobed=EQ_1, excesses="1", observe=each(3, says(lambda p: "tip", "observe(points) is"))),
+       value=dict(observe=says(lambda p: p, "observe(points) has shape"), settle_cycles=-1,
+                  excesses=each(says([], "excesses is empty"), [[1e-3]]))),
     of(orbits.period_of, lambda c: dict(
            points=c.strobed.orbit(c.state, 20).points, impacts=c.strobed.orbit(c.state, 20).impacts,
            largest_period=8, tolerance=1e-9), over="motion",
        kind=dict(points="p"), value=dict(impacts=[0], points=each(
-           [0.0], np.zeros((20, 0)), told([[0.0]] * 3, "points has 3 strobes")))),
+           [0.0], np.zeros((20, 0)), says([[0.0]] * 3, "points has 3 strobes")))),
     of(orbits.AmplitudeScan, lambda: dict(oscillator=EQ_1, most_cycles=128),
        kind=dict(oscillator=each(None, nordmark())),
        value=dict(oscillator=each(UNDRIVEN, TWO_STOPS), most_cycles=127)),
     of(lambda **given: orbits.AmplitudeScan(oscillator=EQ_1, most_cycles=128)(**given),
        dict(frequency=22.2, excesses=[-1e-3]), name="AmplitudeScan, a column", kind=dict(excesses="all"),
-       value=dict(frequency=0.0, excesses=told([1e-3, 0.0], "excesses must be"))),
+       value=dict(frequency=0.0, excesses=says([1e-3, 0.0], "excesses must be"))),
     of(orbits.strobe_derivatives, lambda c: dict(strobed=c.below, state=c.below.steady(), period=2),
        over="motion", kind=dict(strobed=None, state=[0.0, 0.0]),
        value=dict(period=each(0, 1.5), state=OFF_STROBE)),

@@ -3,7 +3,7 @@
 from itertools import pairwise
 
 import numpy as np
-from many_stops_flights import Exact, Flow, System, numbers
+from many_stops_flights import System
 from many_stops_judge import Motion, Unordinary, complete
 
 PLACES = ["tip", "b", "c", ("tip", "b"), ("b", "c")]
@@ -14,6 +14,17 @@ def random_law(rng: np.random.Generator, mobility: float) -> list:
         return ["newton", float(rng.choice((0.0, 0.95 * rng.uniform() ** 1.5), p=(0.15, 0.85)))]
     unit, damping = 10.0 ** rng.uniform(0.0, 1.3), rng.choice((0.0, rng.uniform(0.05, 0.6)))
     return ["linear", unit**2 / mobility, float(damping * unit / mobility)]
+
+
+def free_heights(problem: dict, row: np.ndarray) -> np.ndarray:
+    """Heights of a point in the motion without stops, every 0.02 up to 40, in double precision."""
+    names = "omega", "decay_rate", "participation", "load", "v"
+    (omega, c, gamma, load, v), s = (np.array(problem[x]) for x in names), np.arange(0.0, 40.0, 0.02)[:, None]
+    w, rates = problem["w"], -0.5 * c + 1j * np.sqrt(omega**2 - 0.25 * c**2)
+    steady = gamma * problem["amplitude"] * w**2 / (omega**2 - w**2 + 1j * w * c)
+    u, du = -load / omega**2 - steady.imag, v - w * steady.real
+    free = u - 1j * (du + 0.5 * c * u) / rates.imag
+    return (load / omega**2 + (steady * np.exp(1j * w * s)).imag + (free * np.exp(rates * s)).real) @ row
 
 
 def random_problem(rng: np.random.Generator) -> dict:
@@ -54,12 +65,9 @@ def random_problem(rng: np.random.Generator) -> dict:
     }
     for i in chosen:
         stop = {"gap": 0.0, "at": PLACES[i // 2], "side": int(1 - 2 * (i % 2))}
-        system = System(problem | {"stops": [stop | {"law": ["newton", 0.0]}]})
-        free = Flow(system, Exact(0), *(numbers(problem[name]) for name in ("q", "v")), [], []).distance(0)
-        s = np.arange(0.0, 40.0, 0.02)
-        height = free.samples(s, np.exp(np.multiply.outer(free.rates.astype(complex), s)))[0].max()
-        stop["gap"] = rng.uniform(0.1, 0.5) * float(max(height, 0.1))
-        stop["law"] = random_law(rng, float(system.rows[0] @ system.rows[0]))
+        row = System(problem | {"stops": [stop | {"law": ["newton", 0.0]}]}).rows[0].astype(float)
+        stop["gap"] = rng.uniform(0.1, 0.5) * max(free_heights(problem, row).max(), 0.1)
+        stop["law"] = random_law(rng, float(row @ row))
         problem["stops"].append(stop)
     if mirrored:
         problem["stops"][1] |= {name: problem["stops"][0][name] for name in ("gap", "law")}

@@ -49,9 +49,8 @@ class Period:
     def fast(self, u, v, runs):
         """Status, impacts and periods left; the arrays are overwritten."""
         counts = np.zeros(1, dtype=np.int64)
-        status, left = one_mode_periods(
-            self.table, self.system, np.empty(0), u, v, runs, np.empty((1, 2)), counts
-        )
+        given = self.table, self.system, np.empty(0), u, v, runs, np.empty((1, 2)), counts
+        status, left = one_mode_periods(*given)
         return status, int(counts[0]), left
 
     def general(self, u, v, runs):
@@ -74,8 +73,7 @@ class Period:
         impact at speed s turns an error d of the tip displacement into (1 + tau) a d/s of its velocity, a the
         greatest acceleration.
         """
-        m = self.motion
-        runs = at_a_strobe()
+        m, runs = self.motion, at_a_strobe()
         worst, impacts, lefts = 0.0, 0, 0
         for _ in range(periods):
             ours = (u.copy(), v.copy(), runs.copy())
@@ -86,9 +84,8 @@ class Period:
             if status != DONE:
                 break
             assert mine_count == count
-            assert all(
-                ours[2][0][name] == runs[0][name] for name in ("regime", "contact_order", "period", "clock")
-            )
+            names = ["regime", "contact_order", "period", "clock"]
+            assert ours[2][0][names] == runs[0][names]
             scale = max(abs(m.level) + math.hypot(m.tip_sine, m.tip_cosine), start, self.size(u, v))
             fastest = max(m.drive, m.omega[0], m.decay[0])
             growth = np.sum(np.log1p((1.0 + m.number0) * fastest * scale / speeds))

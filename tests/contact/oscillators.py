@@ -4,11 +4,12 @@ import numpy as np
 import pytest
 from scipy.optimize import linear_sum_assignment
 
-from beam import ModalModel, single_mode
+from beam import ModalModel, Point, single_mode
 from contact import ContactLaw, HarmonicDrive, ImpactOscillator, LinearContact, NewtonRestitution, State, Stop
 
 OMEGA = 2 * np.pi * 24.5 * np.array([1.0, 6.1, 15.4, 29.0, 47.0, 70.0])
 PHI = 10.0 * np.array([1.0, 0.7, 0.5, 0.4, 0.3, 0.25])
+LIGHT = 10.0 * np.array([1.0, 0.9, 0.8, 0.7, 0.6, 0.5])  # with a light tip
 GAMMA = np.array([0.09, 0.05, -0.03, 0.02, -0.015, 0.01])
 GAP = 0.005
 FREQUENCY = 21.5
@@ -16,23 +17,14 @@ THROWN = State(displacement=np.zeros(3), velocity=np.array([0.15, 0.02, 0.01]))
 """Three modes on their way to the stop, which they touch after some 4 ms."""
 
 # under-, over- and critically damped modes beside the first; a light and a heavy tip
-MODES = {
-    "three modes": dict(
-        omega=[154.0, 960.0, 2690.0],
-        decay_rate=[3.56, 19.2, 80.0],
-        phi=[7.1, -6.5, 5.2],
-        participation=[0.09, -0.05, 0.03],
-    ),
-    "an overdamped mode": dict(
-        omega=[154.0, 500.0], decay_rate=[3.56, 1300.0], phi=[7.1, 4.0], participation=[0.09, 0.04]
-    ),
-    "a critical mode": dict(
-        omega=[154.0, 600.0], decay_rate=[3.56, 1200.0], phi=[7.1, 4.0], participation=[0.09, 0.04]
-    ),
-    "an undamped mode": dict(
-        omega=[154.0, 1000.0], decay_rate=[3.56, 0.0], phi=[7.1, 3.0], participation=[0.09, 0.0]
-    ),
+ROWS = {
+    "three modes": ([154.0, 960.0, 2690.0], [3.56, 19.2, 80.0], [7.1, -6.5, 5.2], [0.09, -0.05, 0.03]),
+    "an overdamped mode": ([154.0, 500.0], [3.56, 1300.0], [7.1, 4.0], [0.09, 0.04]),
+    "a critical mode": ([154.0, 600.0], [3.56, 1200.0], [7.1, 4.0], [0.09, 0.04]),
+    "an undamped mode": ([154.0, 1000.0], [3.56, 0.0], [7.1, 3.0], [0.09, 0.0]),
 }
+ARRAYS = ("omega", "decay_rate", "phi", "participation")
+MODES = {name: dict(zip(ARRAYS, rows, strict=True)) for name, rows in ROWS.items()}
 
 
 def slow(*cases: object) -> list:
@@ -67,6 +59,17 @@ def modes_on_stop(
     return ImpactOscillator(model=model, stop=stop, drive=base, load=force)
 
 
+def before_stops(
+    omega: np.ndarray, decay: np.ndarray, gamma: np.ndarray, rows: np.ndarray, stops: list, **more: object
+) -> ImpactOscillator:
+    """Modes, and (gap, law) of a stop before the point of each of the `rows`."""
+    points = {f"{number}": Point(row=row) for number, row in enumerate(rows)}
+    numbers = dict(omega=omega, decay_rate=decay, phi=rows[0], participation=gamma)
+    model = ModalModel(**numbers, points=points, dimensionless=True)
+    placed = [Stop(gap=gap, law=law, at=name) for name, (gap, law) in zip(points, stops, strict=True)]
+    return ImpactOscillator(model=model, stops=placed, **more)
+
+
 def spring(
     n_modes: int,
     law: ContactLaw,
@@ -82,9 +85,22 @@ def spring(
     `turned` is the same spring half a drive period later.
     """
     omega, gamma = OMEGA[:n_modes], (-1 if turned else 1) * GAMMA[:n_modes]
-    return modes_on_stop(
-        omega, damping * omega, phi[:n_modes], gamma, law=law, gap=GAP, drive=drive, load=load
-    )
+    rows = omega, damping * omega, phi[:n_modes], gamma
+    return modes_on_stop(*rows, law=law, gap=GAP, drive=drive, load=load)
+
+
+def light_tip(
+    n_modes: int,
+    law: ContactLaw,
+    *,
+    excess: float | None = 0.05,
+    damping: float = 0.02,
+    frequency: float = 21.5,
+) -> ImpactOscillator:
+    """The same spring with a light tip, for collisions; undriven if `excess` is None."""
+    drive = None if excess is None else (frequency, 0.0)
+    light = spring(n_modes, law, damping=damping, phi=LIGHT, drive=drive)
+    return light if excess is None else light.with_excess(excess)
 
 
 def many_modes(name: str, *, restitution: float = 0.35, **changes: list[float]) -> ImpactOscillator:
@@ -119,6 +135,15 @@ def at_rest_on(model: ModalModel, law: LinearContact, load: float) -> tuple[Impa
     oscillator = ImpactOscillator(model=model, stop=Stop(gap=0.0, law=law), load=load * model.phi)
     whole = np.diag(model.omega**2) + law.stiffness * np.outer(model.phi, model.phi)
     return oscillator, np.linalg.solve(whole, load * model.phi)
+
+
+def steady(oscillator: ImpactOscillator, time: float) -> tuple[np.ndarray, np.ndarray]:
+    """Modal displacement and velocity of the motion without wall."""
+    if oscillator.drive is None:
+        return np.zeros(oscillator.n_modes), np.zeros(oscillator.n_modes)
+    w = oscillator.drive.angular_frequency
+    turning = oscillator.drive.amplitude * oscillator.steady_response() * np.exp(1j * w * time)
+    return turning.imag, (1j * w * turning).imag
 
 
 def heights(oscillator: ImpactOscillator, displacement: np.ndarray) -> np.ndarray:

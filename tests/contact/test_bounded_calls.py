@@ -101,8 +101,8 @@ def test_every_public_call_is_in_the_tables() -> None:
 def test_every_public_call_comes_back(form: str) -> None:
     paths = [ROOT, ROOT / "tests/beam", ROOT / "tests/contact", os.environ.get("PYTHONPATH")]
     env = os.environ | {"PYTHONPATH": os.pathsep.join(str(path) for path in paths if path)}
-    command, asked = [sys.executable, __file__, form], dict(text=True, capture_output=True, timeout=900)
-    ended = subprocess.run(command, cwd=ROOT, env=env, **asked)
+    command, settings = [sys.executable, __file__, form], dict(text=True, capture_output=True, timeout=900)
+    ended = subprocess.run(command, cwd=ROOT, env=env, **settings)
     lines = [line for line in ended.stdout.splitlines() if line]
     assert ended.returncode == 0, f"{lines[-1:]} did not come back\n{ended.stderr[-3000:]}"
     rows = [[part.strip() for part in line.split("|", 4)] for line in lines]

@@ -5,8 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from light_spring import PHI, equation_1, real_differs, spring
-from oscillators import GAMMA, GAP, OMEGA, newton
+from oscillators import GAMMA, GAP, LIGHT, OMEGA, equation_1, light_tip, newton
 from whole_motions import pressed
 
 from beam import ModalModel
@@ -28,11 +27,10 @@ def test_planted_restitution_and_delay_are_given_back(restitution: float, delay:
         for excess in (1e-5, 1e-3, 1e-2, 5e-2):
             law = DelayedRestitution(restitution=restitution, delay=delay)
             law = newton(restitution) if delay == 0.0 < restitution else law
-            found = first_collision(equation_1(frequency, law, excess))
+            found = first_collision(equation_1(frequency, law, gap=0.0107, excess=excess))
             height = math.sqrt(excess * (2 + excess))
             assert found.approach == pytest.approx(2 * math.pi * frequency * 0.0107 * height, rel=1e-9)
-            assert abs(found.restitution - restitution) < 2e-10
-            assert abs(found.delay - delay) < 1e-13
+            assert abs(found.restitution - restitution) < 2e-10 and abs(found.delay - delay) < 1e-13
             assert found.contact_time == pytest.approx(delay, abs=1e-16)
             # the wait is a kick and a shift of mode 1, to the order of delay x frequency
             speed, a = found.approach, found.deceleration
@@ -40,27 +38,10 @@ def test_planted_restitution_and_delay_are_given_back(restitution: float, delay:
             assert abs(found.kick - 1 - restitution + delay * a / speed) < off + 1e-9
 
 
-def test_planted_functions_of_the_speed_are_given_back() -> None:
-    def restitution(v: float) -> float:
-        return 0.15 + 0.5 / (1 + 20 * v)
-
-    def delay(v: float) -> float:
-        return 2e-4 * (0.1 + v) ** -0.2
-
-    law = DelayedRestitution(restitution=restitution, delay=delay)
-    seen = []
-    for excess in (1e-5, 1e-4, 1e-3, 1e-2, 5e-2):
-        found = first_collision(equation_1(22.2, law, excess))
-        assert found.restitution == pytest.approx(restitution(found.approach), abs=2e-9)
-        assert found.delay == pytest.approx(delay(found.approach), abs=1e-12)
-        seen.append(found.restitution)
-    assert seen[0] > seen[-1] + 0.3
-
-
 def two_modes(first: float, second: float, e: float, lead: float) -> tuple[ImpactOscillator, State]:
     """Mode 1 of `first` gaps, `lead` [rad] before its peak; mode 2 of `second` gaps, rising through zero."""
-    oscillator = spring(2, newton(e), excess=None, damping=0.0)
-    amplitude = GAP / PHI[:2] * np.array([first, second])
+    oscillator = light_tip(2, newton(e), excess=None, damping=0.0)
+    amplitude = GAP / LIGHT[:2] * np.array([first, second])
     velocity = amplitude * OMEGA[:2] * [math.sin(lead), 1.0]
     return oscillator, State(displacement=amplitude * [math.cos(lead), 0.0], velocity=velocity)
 
@@ -71,7 +52,12 @@ def test_ringing_alone_can_make_the_touch(second: float, returns: bool) -> None:
     oscillator, state = two_modes(0.97, second, 0.1, 0.2)
     run = simulate(oscillator, state, duration=0.06)
     c = collisions(run, unfinished="drop")[0]
-    assert c.forced_by_ringing and real_differs(c) and c.returns == returns and c.impacts == 1
+    assert (
+        c.forced_by_ringing
+        and c.real_approach != pytest.approx(c.approach, rel=0.01)
+        and c.returns == returns
+        and c.impacts == 1
+    )
     assert all(math.isnan(x) for x in (c.approach, c.restitution, c.delay, c.kick))
     assert c.time == c.first_touch == run.impacts.start[0]
     assert c.ringing == pytest.approx(second * GAP, rel=1e-12)
@@ -90,7 +76,7 @@ def test_outgoing_motion_may_stay_below_the_gap() -> None:
     c = collisions(simulate(oscillator, state, duration=0.06), unfinished="drop")[0]
     assert not c.forced_by_ringing and not c.returns and c.impacts == 1
     assert math.isnan(c.restitution) and math.isnan(c.delay)
-    assert c.first_touch < c.time - 1e-4 and real_differs(c)
+    assert c.first_touch < c.time - 1e-4 and c.real_approach != pytest.approx(c.approach, rel=0.01)
     assert c.kick * c.approach == pytest.approx(c.kick_velocity, rel=1e-14) and c.kick > 0.5
     # mode 1 has 1.01 gaps of amplitude before, and less than one after
     after = math.hypot(GAP + c.shift, (c.approach - c.kick_velocity) / OMEGA[0])
@@ -99,11 +85,10 @@ def test_outgoing_motion_may_stay_below_the_gap() -> None:
 
 
 def test_collision_that_is_not_final_is_refused_in_a_sentence() -> None:
-    oscillator = equation_1(22.2, newton(0.3), 0.01)
+    oscillator = equation_1(22.2, newton(0.3), gap=0.0107, excess=0.01)
     start = before_collision(oscillator)
     whole = simulate(oscillator, start, periods=8)
-    touch = float(whole.impacts.start[0])
-    final = None
+    touch, final = float(whole.impacts.start[0]), None
     for after in (1e-5, 0.1 / 22.2, 0.4 / 22.2, 0.6 / 22.2, 0.95 / 22.2):
         run = simulate(oscillator, start, duration=touch - start.time + after)
         assert len(run.impacts) == 1
@@ -111,18 +96,16 @@ def test_collision_that_is_not_final_is_refused_in_a_sentence() -> None:
             found = collisions(run)
         except ValueError as error:
             assert f"{run.end.time:.6g} s" in str(error) and f"{touch:.6g} s" in str(error)
-            assert collisions(run, unfinished="drop") == []
-            assert final is None
+            assert collisions(run, unfinished="drop") == [] and final is None
             continue
         final = after if final is None else final
-        assert len(found) == 1
-        assert found[0] == collisions(whole, unfinished="drop")[0]
+        assert len(found) == 1 and found[0] == collisions(whole, unfinished="drop")[0]
     # the next minimum of a motion at about the drive frequency comes half a period later
     assert final == pytest.approx(0.6 / 22.2)
 
 
 def test_contact_under_way_at_the_end_is_no_collision_yet() -> None:
-    oscillator = spring(4, HertzContact(stiffness=3e7))
+    oscillator = light_tip(4, HertzContact(stiffness=3e7))
     start = before_collision(oscillator)
     whole = simulate(oscillator, start, periods=4)
     middle = 0.5 * (whole.impacts.start[0] + whole.impacts.end[0])
@@ -138,7 +121,7 @@ def test_contact_under_way_at_the_end_is_no_collision_yet() -> None:
 @pytest.mark.parametrize("method", [None, CentralDifference(step=1e-6)], ids=["exact", "stepped"])
 def test_contact_under_way_at_the_start_is_no_touch(method: Integrator | None) -> None:
     """Cut in the second collision: it is logged as what it is, and the others are found as without a cut."""
-    oscillator = spring(4, HertzContact(stiffness=3e7))
+    oscillator = light_tip(4, HertzContact(stiffness=3e7))
     start = before_collision(oscillator)
     whole = simulate(oscillator, start, periods=12, method=method)
     found = collisions(whole, unfinished="drop")
@@ -166,7 +149,7 @@ def test_stay_that_goes_on_is_a_stay() -> None:
 
 
 def test_phase_is_kept_over_any_number_of_periods() -> None:
-    oscillator = equation_1(22.2, newton(0.1), 1e-4)
+    oscillator = equation_1(22.2, newton(0.1), gap=0.0107, excess=1e-4)
     start = StroboscopicMap(oscillator=oscillator).steady()
     first = first_collision(oscillator, start)
     for periods in (10**6, 10**8):
@@ -177,7 +160,7 @@ def test_phase_is_kept_over_any_number_of_periods() -> None:
 
 def test_with_one_mode_each_impact_is_a_collision_however_slow_the_drive() -> None:
     """Between two impacts the motion is the virtual one, and has a minimum."""
-    oscillator = equation_1(0.3, newton(0.5), 0.02)
+    oscillator = equation_1(0.3, newton(0.5), gap=0.0107, excess=0.02)
     run = simulate(oscillator, before_collision(oscillator), periods=3)
     touches = run.impacts.start[run.impacts.kind == ImpactKind.IMPACT]
     found = collisions(run, unfinished="drop")
@@ -188,7 +171,7 @@ def test_with_one_mode_each_impact_is_a_collision_however_slow_the_drive() -> No
 
 def test_mode_1_is_the_one_that_moves_the_tip_most() -> None:
     """A suspension of 3 Hz below it, or another order of the modes, changes nothing of what is said of it."""
-    rows = {"omega": OMEGA[:3], "decay_rate": 0.02 * OMEGA[:3], "phi": PHI[:3], "participation": GAMMA[:3]}
+    rows = {"omega": OMEGA[:3], "decay_rate": 0.02 * OMEGA[:3], "phi": LIGHT[:3], "participation": GAMMA[:3]}
     one, three = (ModalModel(**{name: row[:n] for name, row in rows.items()}) for n in (1, 3))
     turned = ModalModel(**{name: row[[2, 0, 1]] for name, row in rows.items()})
     stop, drive = Stop(gap=GAP, law=newton(0.1)), HarmonicDrive(frequency=21.5)
@@ -207,7 +190,6 @@ def test_mode_1_is_the_one_that_moves_the_tip_most() -> None:
 
 
 def test_grazes_are_no_collisions() -> None:
-    oscillator = equation_1(22.2, newton(0.3), 0.0)
+    oscillator = equation_1(22.2, newton(0.3), gap=0.0107, excess=0.0)
     run = simulate(oscillator, before_collision(oscillator), periods=6)
-    assert np.all(run.impacts.kind == 1)
-    assert collisions(run) == []
+    assert np.all(run.impacts.kind == 1) and collisions(run) == []

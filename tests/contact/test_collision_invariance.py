@@ -2,8 +2,7 @@
 
 import numpy as np
 import pytest
-from light_spring import PHI, equation_1, spring, steady
-from oscillators import GAP, newton
+from oscillators import GAP, LIGHT, equation_1, light_tip, newton, steady
 
 import contact
 
@@ -27,10 +26,8 @@ LOSSY = newton(0.0), newton(0.5), DASHPOT, contact.HuntCrossley(stiffness=3e7, d
 @pytest.mark.parametrize("n_modes", [1, 2, 6])
 def test_energy_of_an_undriven_collision_is_all_accounted_for(n_modes: int, law: contact.ContactLaw) -> None:
     """Without drive and damping: gain of mode 1 + gain of the higher modes + loss = 0, time and again."""
-    oscillator = spring(n_modes, law, excess=None, damping=0.0)
-    start = np.zeros(n_modes)
-    start[0] = -0.0009
-    state = contact.State(displacement=start, velocity=np.zeros(n_modes))
+    oscillator = light_tip(n_modes, law, excess=None, damping=0.0)
+    state = contact.State(displacement=-0.0009 * np.eye(n_modes)[0], velocity=np.zeros(n_modes))
     first = float(oscillator.energy(state.displacement, state.velocity))
     found = contact.collisions(contact.simulate(oscillator, state, duration=0.4), unfinished="drop")
     used = [c for c in found if not c.forced_by_ringing]
@@ -53,12 +50,11 @@ SAME |= {"energy_to_higher_modes": 1e-3, "energy_lost": 1e-3}
 @pytest.mark.parametrize("law", [HERTZ, DASHPOT, newton(0.4)], ids=repr)
 def test_collision_does_not_depend_on_where_the_motion_is_started(law: contact.ContactLaw) -> None:
     """Started anywhere along the same motion, or whole drive periods later."""
-    oscillator = spring(6, law)
+    oscillator = light_tip(6, law)
     start = contact.before_collision(oscillator)
     run = contact.simulate(oscillator, start, periods=40)
     found = contact.collisions(run, unfinished="drop")
-    chosen = found[4]
-    before = found[3].end
+    chosen, before = found[4], found[3].end
     times = before + np.array([0.05, 0.3, 0.6, 0.95, 0.9999]) * (chosen.first_touch - before)
     along = contact.simulate(oscillator, start, periods=40, times=times)
     for i, later in ((0, 0), (1, 0), (2, 0), (3, 0), (4, 0), (2, 1), (2, 1000), (4, 100_000)):
@@ -75,26 +71,26 @@ def test_collision_does_not_depend_on_where_the_motion_is_started(law: contact.C
 
 
 def test_first_collision_looks_for_one_long_enough_or_says_so() -> None:
-    resting = equation_1(23.4, newton(0.3), -0.02)
+    resting = equation_1(23.4, newton(0.3), excess=-0.02)
     from_rest = contact.first_collision(resting, contact.State.rest(1))
     run = contact.simulate(resting, periods=64)
     assert from_rest == contact.collisions(run, unfinished="drop")[0]
     assert from_rest.first_touch > 3 / 23.4  # not within the first try of three periods
-    below = equation_1(22.2, newton(0.3), -0.01)
+    below = equation_1(22.2, newton(0.3), excess=-0.01)
     with pytest.raises(ValueError, match="periods is 64"):
         contact.first_collision(below)
     with pytest.raises(ValueError, match="periods is 2"):
         contact.first_collision(resting, contact.State.rest(1), periods=2)
     with pytest.raises(ValueError, match="drive"):
-        contact.first_collision(spring(2, newton(0.3), excess=None))
+        contact.first_collision(light_tip(2, newton(0.3), excess=None))
 
 
 def test_before_collision_is_the_lowest_point_of_the_steady_motion() -> None:
-    oscillator = spring(6, newton(0.3))
+    oscillator = light_tip(6, newton(0.3))
     state = contact.before_collision(oscillator)
     assert 0 <= state.time < oscillator.period
     q, rate = steady(oscillator, state.time)
     np.testing.assert_allclose(state.displacement, q, rtol=1e-12, atol=1e-18)
     np.testing.assert_allclose(state.velocity, rate, rtol=1e-10, atol=1e-12)
-    assert float(PHI @ state.displacement) == pytest.approx(-1.05 * GAP, rel=1e-12)
-    assert abs(float(PHI @ state.velocity)) < 1e-12
+    assert float(LIGHT @ state.displacement) == pytest.approx(-1.05 * GAP, rel=1e-12)
+    assert abs(float(LIGHT @ state.velocity)) < 1e-12

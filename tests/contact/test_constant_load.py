@@ -1,26 +1,21 @@
 """A constant load g moves the rest position of a mode by g/omega^2, and a mode of zero frequency drifts."""
 
 from dataclasses import astuple, replace
+from functools import partial
 
 import numpy as np
 import pytest
 from oscillators import modes_on_stop
 
 import contact
-from contact import LinearContact, NordmarkMap, State, Stop, StroboscopicMap, collisions, orbits, simulate
-from contact.integrators import (
-    CentralDifference,
-    Exact,
-    GeneralisedAlpha,
-    MoreauJean,
-    NonsmoothGeneralisedAlpha,
-    SampledFlight,
-    Splitting,
-)
+from contact import NordmarkMap, State, Stop, StroboscopicMap, collisions, integrators, orbits, simulate
 
-LOAD, REFUSED = np.array([70.0, -150.0]), "load (is|drives)"
-METHODS = [Exact(), *(kind(step=1e-5) for kind in (CentralDifference, GeneralisedAlpha, Splitting))]
-HARD = [SampledFlight(points=500), MoreauJean(step=1e-5), NonsmoothGeneralisedAlpha(step=1e-5, rho=0.8)]
+LOAD, REFUSED, GAP = np.array([70.0, -150.0]), "load (is|drives)", orbits.Change(gap=1.0)
+hits = partial(collisions, unfinished="drop")
+STEPPED = integrators.CentralDifference, integrators.GeneralisedAlpha, integrators.Splitting
+METHODS = [integrators.Exact(), *(kind(step=1e-5) for kind in STEPPED)]
+HARD = [integrators.SampledFlight(points=500), integrators.MoreauJean(step=1e-5)]
+HARD += [integrators.NonsmoothGeneralisedAlpha(step=1e-5, rho=0.8)]
 
 
 def strobed(o, excess=0.02):
@@ -29,6 +24,10 @@ def strobed(o, excess=0.02):
 
 def hard(o):
     return replace(o, stop=Stop(gap=o.stop.gap, law=contact.NewtonRestitution(local_restitution=0.5)))
+
+
+def settled(below):
+    return orbits.settle(below, below.steady(), most_cycles=64).end
 
 
 def thrown(rest):
@@ -52,15 +51,11 @@ CALLS = {
     "steady": lambda o, rest: StroboscopicMap(oscillator=o).steady().displacement - rest,
     "before_collision": lambda o, rest: contact.before_collision(o).displacement - rest,
     "first_collision": lambda o, rest: astuple(contact.first_collision(o.with_excess(0.3))),
-    "collisions": lambda o, rest: astuple(
-        collisions(simulate(o, thrown(rest), periods=4), unfinished="drop")[0]
-    ),
+    "collisions": lambda o, rest: astuple(hits(simulate(o, thrown(rest), periods=4))[0]),
     "orbit": lambda o, rest: strobed(o).orbit(thrown(rest), 20).end.displacement - rest,
     "factors": lambda o, rest: strobed(o).orbit(thrown(rest), 2, factors=[1.2, 0.9]).end.displacement - rest,
     "jacobians": lambda o, rest: strobed(o).jacobians(thrown(rest), 3)[0][-1][0],
-    "settle": lambda o, rest: (
-        orbits.settle(strobed(o, -0.1), strobed(o, -0.1).steady(), most_cycles=64).end.displacement - rest
-    ),
+    "settle": lambda o, rest: settled(strobed(o, -0.1)).displacement - rest,
     "born": lambda o, rest: orbits.born(strobed(o), 1e-3, most_cycles=200).end.displacement - rest,
     "exponents": lambda o, rest: orbits.map_exponents(strobed(o), thrown(rest), 20)[0].values,
     "diagram": diagram,
@@ -78,14 +73,12 @@ WITHOUT = {
     "fold": lambda o, rest: orbits.fold_excess(strobed(o), 3),
     "kick": lambda o, rest: orbits.KickFamily(oscillator=o, period=1),
     "shooting": lambda o, rest: orbits.Shooting(oscillator=o, period=1),
-    "changes": lambda o, rest: orbits.motion_derivatives(
-        o, thrown(rest), [orbits.Change(gap=1.0)], periods=1
-    ),
+    "changes": lambda o, rest: orbits.motion_derivatives(o, thrown(rest), [GAP], periods=1),
 }
 
 
 def loaded(omega):
-    law = LinearContact(stiffness=1e6)
+    law = contact.LinearContact(stiffness=1e6)
     return modes_on_stop(omega, 3.0, [1.0, -0.8], [1.0, 0.3], law=law, drive=(22.2, 0.01), load=LOAD)
 
 

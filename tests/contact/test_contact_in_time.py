@@ -33,8 +33,7 @@ def test_strobe_within_a_contact_changes_nothing(n_modes, law, share):
         trial = simulate(plain, approaching(PERIOD - lead), duration=0.01).impacts
         lead = share * (trial.end[0] - trial.start[0]) + 1e-9 / 0.4
     # the same floating-point times on both sides of the shift
-    lead = float(np.float32(lead))
-    length = 2.7 * PERIOD
+    lead, length = float(np.float32(lead)), 2.7 * PERIOD
     marks = np.sort(np.concatenate([[PERIOD], PERIOD - lead + np.linspace(0, length, 301)]))
     within = simulate(plain, approaching(PERIOD - lead), duration=length, times=marks)
     earlier = np.clip(marks - 0.5 * PERIOD, 0.5 * PERIOD - lead, None)
@@ -57,7 +56,7 @@ def test_strobe_within_a_contact_changes_nothing(n_modes, law, share):
     np.testing.assert_array_equal(unsampled.end.displacement, within.end.displacement)
 
 
-def test_delayed_restitution_waits_on_the_wall_and_leaves_as_told():
+def test_delayed_restitution_waits_on_the_wall_and_leaves_as_its_law_says():
     for law in (
         DelayedRestitution(restitution=0.25, delay=3e-4),
         DelayedRestitution(restitution=0.0, delay=3e-3),
@@ -69,8 +68,7 @@ def test_delayed_restitution_waits_on_the_wall_and_leaves_as_told():
         run = simulate(oscillator, periods=30)
         impacts = run.impacts
         finished = np.isfinite(impacts.end)
-        assert finished.sum() > 10
-        assert np.ptp(impacts.approach) > 0.02
+        assert finished.sum() > 10 and np.ptp(impacts.approach) > 0.02
         approach = impacts.approach[finished]
         tau = [law.restitution(v) if callable(law.restitution) else law.restitution for v in approach]
         delay = [law.delay(v) if callable(law.delay) else law.delay for v in approach]

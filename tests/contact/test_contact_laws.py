@@ -60,15 +60,11 @@ def contact_by_solver(oscillator: ImpactOscillator, start: float, q: np.ndarray,
     return solve_ivp(rates, (0.0, 1e3), x, "DOP853", events=released, dense_output=True, **bounds)
 
 
-@pytest.mark.parametrize(
-    "modes, chi, damping, load",
-    [
-        *itertools.product([1, 2, 8], [0.0, 0.3], [0.02, 2.5], [0.0]),
-        (4, 0.0, 0.02, 3.0),
-        (20, 0.3, 0.02, 0.0),
-        *slow(*itertools.product([20, 40], [0.0, 0.3], [0.02, 2.5], [0.0])),
-    ],
-)
+CASES = [*itertools.product([1, 2, 8], [0.0, 0.3], [0.02, 2.5], [0.0]), (4, 0.0, 0.02, 3.0)]
+CASES += [(20, 0.3, 0.02, 0.0), *slow(*itertools.product([20, 40], [0.0, 0.3], [0.02, 2.5], [0.0]))]
+
+
+@pytest.mark.parametrize("modes, chi, damping, load", CASES)
 def test_a_contact_is_that_of_an_independent_integration(modes, chi, damping, load):
     """State at the release, duration, loss and samples inside; fast and slow, driven, damped, loaded."""
     oscillator, generator = ladder(modes, chi=chi, damping=damping, load=load), np.random.default_rng(5)
@@ -101,15 +97,13 @@ def test_a_contact_is_that_of_an_independent_integration(modes, chi, damping, lo
 def test_touch_and_release_lie_on_the_wall_to_rounding(law):
     """Heights there are a few rounding errors of the sum over modes; signs are right on either side."""
     oscillator = spring(6, law, drive=(FREQUENCY, 2.2e-3))
-    run = simulate(oscillator, periods=60)
-    impacts = run.impacts
+    impacts = simulate(oscillator, periods=60).impacts
     finished = np.isfinite(impacts.end)
     assert finished.sum() > 35
     touch = heights(oscillator, impacts.displacement_start)
     release = heights(oscillator, impacts.displacement_end[finished])
     rounding = 2.2e-16 * 4 * (GAP + np.max(np.abs(impacts.displacement_start) @ PHI))
-    assert np.max(np.abs(touch)) < 2 * rounding
-    assert np.max(np.abs(release)) < 20 * rounding
+    assert np.max(np.abs(touch)) < 2 * rounding and np.max(np.abs(release)) < 20 * rounding
     np.testing.assert_allclose(impacts.velocity_start @ PHI, impacts.approach, rtol=1e-12)
     np.testing.assert_allclose(impacts.velocity_end[finished] @ PHI, impacts.rebound[finished], rtol=1e-10)
     assert np.all(impacts.approach > 0) and np.all(impacts.rebound[finished] < 0)
@@ -150,9 +144,7 @@ LOSING += [LinearContact(stiffness=k, damping=c) for k, c in ((1e5, 60.0), (2e4,
 @pytest.mark.parametrize("n_modes", [1, 6])
 def test_losses_reported_are_the_energy_that_is_gone(n_modes, law):
     oscillator = spring(n_modes, law, damping=0.0)
-    start = np.zeros(n_modes)
-    start[0] = -0.003
-    state = State(displacement=start, velocity=np.zeros(n_modes))
+    state = State(displacement=-0.003 * np.eye(n_modes)[0], velocity=np.zeros(n_modes))
     run = simulate(oscillator, state, duration=1.0)
     impacts = run.impacts
     first = oscillator.energy(state.displacement, state.velocity)

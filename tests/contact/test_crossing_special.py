@@ -13,9 +13,7 @@ from contact.flight.elementary import EPS
 from contact.flight.tip import tip_bound, tip_rounding, tip_state
 from contact.touch.newton import acceleration_rounding, newton_impact
 
-pytestmark = pytest.mark.skipif(
-    np.finfo(Real).eps > 2e-19, reason="the judge needs a long double of at least 64 bits"
-)
+pytestmark = tip_judge.LONG_DOUBLE
 
 
 def on_the_wall(generator: np.random.Generator, n_modes: int, order: int) -> tuple:
@@ -37,12 +35,10 @@ def on_the_wall(generator: np.random.Generator, n_modes: int, order: int) -> tup
     rows = np.array(rows[: order + 1]) / scale[: order + 1, None]
     weight = np.concatenate([1 / np.abs(phi), motion.omega / np.abs(phi)])
     steady = np.array(tip_state(motion, base, 0 * u, 0 * v))
-    third = -(motion.drive**2) * steady[1]
-    wanted = np.zeros(order + 1)
+    third, wanted = -(motion.drive**2) * steady[1], np.zeros(order + 1)
     wanted[order] = -generator.uniform(0.02, 0.3) * 0.01
     wanted -= np.array([*steady, third])[: order + 1] / scale[: order + 1]
-    state = np.concatenate([u, v])
-    pinned = rows * weight
+    state, pinned = np.concatenate([u, v]), rows * weight
     for _ in range(3):  # refined, so that the vanishing derivatives vanish to rounding
         state = state + weight * np.linalg.lstsq(pinned, wanted - rows @ state, rcond=None)[0]
     direction = generator.normal(size=2 * n_modes)
@@ -59,7 +55,7 @@ def test_flights_from_the_wall(order, n_modes):
     above or below the stop.
     """
     generator = np.random.default_rng([10, order, n_modes])
-    told = {"free": 0, "crosses": 0, "within rounding": 0}
+    counts = {"free": 0, "crosses": 0, "within rounding": 0}
     for _ in range(8):
         motion, base, u, v, du, dv = on_the_wall(generator, n_modes, order)
         duration = motion.period - base
@@ -91,8 +87,8 @@ def test_flights_from_the_wall(order, n_modes):
             assert signal(early) < motion.gap
             tops = signal.peaks(duration, above=0.9 * motion.gap)
             verdict = judge(signal, motion.gap, duration, start=early, peaks=tops)
-            told[tip_judge.assert_agrees(result, verdict, motion, un, vn, base)] += 1
-    assert min(told["free"], told["crosses"]) > 8
+            counts[tip_judge.assert_agrees(result, verdict, motion, un, vn, base)] += 1
+    assert min(counts["free"], counts["crosses"]) > 8
 
 
 @pytest.mark.parametrize("restitution", [0.0, 1e-3, 0.7, *slow(1e-6, 0.1, 1.0)])
@@ -126,8 +122,7 @@ def test_overtones_ringing_after_an_impact(restitution):
         assert signal(Real(s), 1) > 0
         assert above.size == 0 or above[0] > s - 1e-12
         assert np.all(heights[(fine > 1e-9) & (fine < s)] < 1e-12)
-    assert touches > 5
-    assert early > 0
+    assert touches > 5 and early > 0
 
 
 def test_impact_with_next_to_no_speed_is_still_left():
@@ -135,8 +130,7 @@ def test_impact_with_next_to_no_speed_is_still_left():
     motion = modes_on_stop(150.0, 3.0).motion()
     for speed in 10.0 ** -np.arange(1.0, 14.0):
         outcome, s = search(motion, 0.0, np.array([0.01]), np.array([-speed]), motion.period, 1)
-        assert outcome == FREE
-        assert s == motion.period
+        assert outcome == FREE and s == motion.period
 
 
 def degenerate(flatness: float, third: float) -> tuple:
@@ -161,8 +155,7 @@ def degenerate(flatness: float, third: float) -> tuple:
 def test_tangency_with_no_acceleration_is_right_or_refused(third, flatness, h):
     """Height, velocity and acceleration vanish together: CROSSES only if it does, FREE only if not."""
     motion, u, v, time = degenerate(flatness, third)
-    signal = Signal(motion, 0.0, u, v)
-    duration = 0.016
+    signal, duration = Signal(motion, 0.0, u, v), 0.016
     # fine samples about the flat top, in long double: it may hold two peaks a few microseconds apart
     fine = np.linspace(-1, 1, 4001)
     fine = Real(time) + Real(2e-3) * fine**3
@@ -224,13 +217,12 @@ def test_on_the_wall_and_pressed_is_refused():
 
 
 @pytest.mark.parametrize("speed", [1.0, 1e-3, 1e-6])
-def test_tip_on_the_wall_within_rounding_is_told_by_its_velocity(speed):
+def test_tip_on_the_wall_within_rounding_is_judged_by_its_velocity(speed):
     motion = modes_on_stop([150.0, 700.0], [3.0, 9.0], [1.0, 2.0]).motion()
     for ulps in (-2, -1, 0, 1, 2):
         u = np.array([0.01 * (1 + ulps * EPS), 0.0])
         outcome, s = search(motion, 0.0, u, np.array([speed, 0.0]), 1e-3)
-        assert outcome == CROSSES
-        assert 0.0 <= s <= 3 * EPS * 0.01 / speed
+        assert outcome == CROSSES and 0.0 <= s <= 3 * EPS * 0.01 / speed
         assert search(motion, 0.0, u, np.array([-speed, 0.0]), 1e-3) == (FREE, 1e-3)
 
 

@@ -69,8 +69,7 @@ def test_the_fold_shifts_by_the_maps_part_of_the_hysteresis_at_a_band_edge(perio
         nordmark = contact.NordmarkMap.from_oscillator(equation_1(frequency))
         share = map_shift(frequency, period, delay) / -MapFamily(nordmark, period).fold().rho
         wrong.append((fold.excess - free.excess) / -free.excess / share - 1.0)
-    assert abs(wrong[1]) < 2e-3
-    assert abs(wrong[1]) < 0.3 * abs(wrong[0])
+    assert abs(wrong[1]) < 2e-3 and abs(wrong[1]) < 0.3 * abs(wrong[0])
 
 
 def test_a_wait_longer_than_the_free_return_holds_the_tip_and_feeds_the_motion() -> None:

@@ -8,8 +8,8 @@ import mpmath as mp
 import numpy as np
 import pytest
 from letters_spring import FOLDED_GAP, folded_strip
-from oscillators import MODES, equation_1, many_modes, newton
-from random_families import ARRAYS, random_change
+from oscillators import ARRAYS, MODES, equation_1, many_modes, newton
+from random_families import random_change
 from simulated_orbit import DELAYED, EQUATION_1, LAWS, beam, on_stop
 
 import contact
@@ -94,8 +94,7 @@ def exact_orbit(m: int) -> Callable[[Sequence[float]], list[mp.mpf]]:
         psi = mp.atan2(gap - a * v, b * v)
         time = (psi - mp.arg(response)) / w
         time -= mp.floor(time * f) / f
-        after = mp.matrix([a * v, per[1] * v - (1 + tau) * v])
-        points = []
+        after, points = mp.matrix([a * v, per[1] * v - (1 + tau) * v]), []
         for j in range(1, m + 1):
             deviation, turn = flow(j / f - time) * after, amplitude * response
             points += [deviation[0] + mp.im(turn), deviation[1] + w * mp.re(turn)]

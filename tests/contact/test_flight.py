@@ -119,8 +119,7 @@ CASES = {"drive": DRIVEN, "drive and load": DRIVEN | LOADED, "load": LOADED, "ne
 def test_flight_of_many_modes_is_the_exponential_of_the_whole_system(name):
     """Under-, critically and over-damped modes and two of zero frequency, one of them without damping."""
     system = oscillator([150.0, 400.0, 900.0, 0.0, 0.0], [3.56, 800.0, 2500.0, 0.0, 25.0], **CASES[name])
-    motion = system.motion()
-    generator = np.random.default_rng(5)
+    motion, generator = system.motion(), np.random.default_rng(5)
     for start, time in ((0.0, 1e-3), (0.01, 0.02), (0.04, 0.006), (0.0, 0.0465)):
         q, v = generator.normal(size=5) * 1e-3, generator.normal(size=5) * 0.1
         s, c = math.sin(motion.drive * start), math.cos(motion.drive * start)
@@ -161,8 +160,7 @@ def test_constant_load_on_a_free_body_with_drag(product):
 @pytest.mark.parametrize("n_modes", [1, 3, 20])
 def test_rounding_bound_holds_and_is_not_idle(n_modes):
     """The error of the tip displacement against 40 digits stays below its bound, and within 20 of it."""
-    generator = np.random.default_rng(n_modes)
-    worst = 0.0
+    generator, worst = np.random.default_rng(n_modes), 0.0
     for amplitude, free in [(2e-3, 1e-3), (0.1, 0.0)] * 20:  # m, of the base and of what is free
         omega = 150.0 * 10 ** np.sort(generator.uniform(0, 2, n_modes))
         decay = omega * 10 ** generator.uniform(-4, 0.6, n_modes)
@@ -244,22 +242,21 @@ def ladder(n: int, damping: float, load: float = 0.0) -> Motion:
 def test_modes_carried_side_by_side_are_those_carried_one_by_one(modes, damping, load, longest):
     """Also where they are not carried side by side: over-damped or loaded modes, phases beyond 5e5."""
     motion, generator = ladder(modes, damping, load), np.random.default_rng(modes)
-    room = modal_flow.new_flight(motion)
+    carried = modal_flow.new_flight(motion)
     size = np.maximum(motion.omega, 1.0)
     u, v = generator.standard_normal(modes) / size, generator.standard_normal(modes)
-    modal_flow.load_state(room, u, v)
+    modal_flow.load_state(carried, u, v)
     for t in longest * 10 ** generator.uniform(-6, 0, 40):
-        modal_flow.flow(motion, room, 0, room.shape[1], t)
+        modal_flow.flow(motion, carried, 0, carried.shape[1], t)
         for k in range(modes):
             x, y = modal_flow.mode_flow(motion.modes, k, u[k], v[k], t)
             scale = abs(v[k]) + size[k] * abs(u[k]) + abs(motion.row(LOAD)[k]) * t
-            assert abs(room[modal_flow.U, k] - x) * size[k] <= 1e-15 * scale
-            assert abs(room[modal_flow.V, k] - y) <= 1e-15 * scale
+            assert abs(carried[modal_flow.U, k] - x) * size[k] <= 1e-15 * scale
+            assert abs(carried[modal_flow.V, k] - y) <= 1e-15 * scale
 
 
 def test_sine_cosine_and_exponential_are_good_to_one_unit_in_the_last_place():
-    generator = np.random.default_rng(2)
-    worst = np.zeros(3)
+    generator, worst = np.random.default_rng(2), np.zeros(3)
     with mp.workdps(50):
         for _ in range(4000):
             phase = float(generator.choice([-1, 1]) * 10 ** generator.uniform(-6, 6.5))
@@ -271,6 +268,5 @@ def test_sine_cosine_and_exponential_are_good_to_one_unit_in_the_last_place():
             for place, true in enumerate((mp.sin(exact), mp.cos(exact), mp.exp(x))):
                 error = abs(float((mp.mpf(found[place]) - true) / math.ulp(abs(float(true)))))
                 worst[place] = max(worst[place], error / (size if place < 2 else 1.5))
-    assert np.all(worst < 1.0)
-    assert sine_cosine(0.0, 0.0) == (0.0, 1.0)
+    assert np.all(worst < 1.0) and sine_cosine(0.0, 0.0) == (0.0, 1.0)
     assert exponential(0.0) == 1.0 and exponential(-800.0) == 0.0

@@ -63,8 +63,7 @@ def dense_motion(
         def balance(contact: float, end=end) -> float:
             return contact - force(*end(contact)[:2])
 
-        first = force(*end(0.0)[:2])
-        contact = 0.0
+        first, contact = force(*end(0.0)[:2]), 0.0
         if first != 0.0:
             contact = float(brentq(balance, 0.0, first * (1 + 1e-9), xtol=1e-13, rtol=1e-15))
         q, v, a = end(contact)

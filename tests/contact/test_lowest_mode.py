@@ -8,15 +8,7 @@ from contact.flight.motion import Motion
 from oscillators import modes_on_stop, newton, slow
 from tip_judge import Signal, highest, with_gap
 
-from contact.flight.bounds import (
-    CLOSE,
-    LowestMode,
-    free_from,
-    free_until,
-    lowest_mode,
-    peak_of_drive,
-    without_others,
-)
+from contact.flight import bounds
 from contact.flight.crossing import CROSSES, FREE, first_crossing
 from contact.flight.modal_flow import load_state, new_flight
 from contact.flight.tip import tip_rounding
@@ -37,14 +29,14 @@ def beam(generator: np.random.Generator, modes: int) -> tuple[Motion, np.ndarray
     return motion, size * np.cos(angle) / phi, size * omega * np.sin(angle) / phi
 
 
-def claims(motion: Motion, base: float, u: np.ndarray, v: np.ndarray) -> tuple[LowestMode, tuple]:
+def claims(motion: Motion, base: float, u: np.ndarray, v: np.ndarray) -> tuple[bounds.LowestMode, tuple]:
     """What can be claimed about the flight from `base` to the strobe, and the flight for the kernels."""
     flight = new_flight(motion)
     load_state(flight, u, v)
     rest = float(np.sum(np.abs(motion.phi[1:]) * np.hypot(u[1:], v[1:] / motion.omega[1:])))
     margin = tip_rounding(motion, u, v)
-    span, peak = (0.0, motion.period - base), peak_of_drive(motion)
-    lowest = lowest_mode(motion, flight, base, span, peak, rest, margin)
+    span, peak = (0.0, motion.period - base), bounds.peak_of_drive(motion)
+    lowest = bounds.lowest_mode(motion, flight, base, span, peak, rest, margin)
     return lowest, (motion, flight)
 
 
@@ -59,13 +51,13 @@ def test_no_touch_lies_in_what_is_proved_free(modes, cases):
         base = motion.period * generator.choice([0.0, generator.uniform(0, 0.9)])
         lowest, flight = claims(motion, base, u, v)
         duration, tip = motion.period - base, Signal(motion, base, u, v)
-        s = free_until(*flight, lowest, base, (0.0, duration))
+        s = bounds.free_until(*flight, lowest, base, (0.0, duration))
         if s > 0.0:
             free, part = free + (s == duration), part + (s < duration)
             assert highest(tip, GAP, 0.0, s) < 0
         for t in generator.uniform(0, duration, 8):
-            height, rate, _bend, _twist = without_others(*flight, base, t)
-            if free_from(lowest, base + t, height, rate):
+            height, rate, _bend, _twist = bounds.without_others(*flight, base, t)
+            if bounds.free_from(lowest, base + t, height, rate):
                 later += 1
                 assert highest(tip, GAP, t, duration) < 0
     assert free > cases / 10 and part > cases / 30 and later > cases / 3  # the claims are made
@@ -87,18 +79,16 @@ def test_a_planted_touch_is_found_and_a_planted_miss_settled(modes, planted):
             lowest, flight = claims(moved, 0.0, u, v)
             if lowest.slack == 0.0 or signal(np.longdouble(0)) > 0.9 * gap:
                 continue
-            s = free_until(*flight, lowest, 0.0, (0.0, moved.period))
+            s = bounds.free_until(*flight, lowest, 0.0, (0.0, moved.period))
             outcome, root = first_crossing(moved, 0.0, u, v, moved.period, 0)
             if sign > 0.0:
                 touched += 1
-                assert s < moved.period
-                assert outcome == CROSSES
-                assert s <= root
-                assert highest(signal, gap, 0.0, root * (1 - 1e-12) - 1e-12) < 1e-16
+                assert s < moved.period and outcome == CROSSES
+                assert s <= root and highest(signal, gap, 0.0, root * (1 - 1e-12) - 1e-12) < 1e-16
                 assert abs(signal(np.longdouble(root)) - np.longdouble(gap)) < 5e-17
             else:
                 missed += 1
                 settled += s == moved.period
                 assert outcome == FREE
     # with one mode what misses by more than ``CLOSE`` is settled without a search
-    assert missed > 0 and (modes > 1 or planted < 2 * CLOSE or settled == missed)
+    assert missed > 0 and (modes > 1 or planted < 2 * bounds.CLOSE or settled == missed)

@@ -30,8 +30,7 @@ class LogisticMap:
         return np.array([0.3])
 
     def orbit(self, state, count):
-        points = np.empty((count, 1))
-        x = state[0]
+        points, x = np.empty((count, 1)), state[0]
         for n in range(count):
             x = self.a * x * (1.0 - x)
             points[n] = x
@@ -143,8 +142,7 @@ def test_chaos_has_one_exponent_by_both_routes_and_the_sum_of_the_determinants(s
     found, _end = map_exponents(here, settled.end, 500, align=20)
     flow, error = divergence(here, settled.end, 500, align=20)
     spread = math.hypot(found.error, error)
-    assert spread < 0.1 < found.largest
-    assert abs(found.largest - flow) < 4.0 * spread
+    assert spread < 0.1 < found.largest and abs(found.largest - flow) < 4.0 * spread
     # determinant of a period: exp(-mu/f) tau^2 for each impact, whatever the motion
     matrices, _end = here.jacobians(settled.end, 64)
     impacts = here.orbit(settled.end, 64).impacts.sum()

@@ -4,6 +4,7 @@ import json
 import os
 from collections import Counter
 from dataclasses import replace
+from itertools import permutations
 from pathlib import Path
 
 import numpy as np
@@ -15,20 +16,17 @@ from oscillators import modes_on_stop, newton, slow
 from tip_judge import PLANTED, Real, Signal, judge, with_gap
 
 from beam import ModalModel, Point
-from contact import (
-    HarmonicDrive,
-    ImpactKind,
-    ImpactOscillator,
-    LinearContact,
-    State,
-    Stop,
-    Trajectory,
-    simulate,
-)
+from contact import HarmonicDrive, ImpactKind, ImpactOscillator, State, Stop, Trajectory, simulate
 from contact.flight.crossing import GRAZE_TOLERANCE
 from contact.flight.elementary import EPS
+<<<<<<< HEAD
 from contact.flight.modal_flow import steady_motion
 from contact.flight.tip import tip_rounding
+=======
+from contact.flight.modal_flow import steady_motion
+from contact.flight.tip import tip_rounding
+from contact.laws import LinearContact
+>>>>>>> work-54T
 
 PROBLEMS = {one["name"]: one for one in json.loads(Path(__file__).with_name("many_stops.json").read_text())}
 SLOW = 1e-5
@@ -78,8 +76,7 @@ def check(problem: dict) -> None:
         "v": end.end.velocity,
     }
     far, hops = distance(problem, answer, found)
-    assert far <= 1e3 * EPS * answer["amplification"]
-    assert hops <= 1e-10
+    assert far <= 1e3 * EPS * answer["amplification"] and hops <= 1e-10
 
 
 @pytest.mark.filterwarnings("ignore:frequency of the drive:beam.SuspiciousValue")
@@ -136,21 +133,20 @@ def views(rng: np.random.Generator) -> tuple:
         flight = start.displacement - steady[0], start.velocity - steady[1]
         signal = Signal(one, time, *flight)
         tops = signal.peaks(length)
-        same = any(
-            np.linalg.matrix_rank([row.astype(float), a[0].phi]) < 2 and row @ a[0].phi > 0 for a in seen
-        )
+        phis = (before[0].phi for before in seen)
+        same = any(np.linalg.matrix_rank([one.phi, phi]) < 2 and one.phi @ phi > 0 for phi in phis)
         if tops.size and signal(tops).max() > 0.01 and not same:
             seen.append((one, flight, signal, tops, signal(tops).max()))
             stops.append(stop)
     return oscillator, start, length, stops, seen
 
 
-@pytest.mark.parametrize("count", [2000, *slow(100_000)])
+@pytest.mark.parametrize("count", [1000, *slow(100_000)])
 @pytest.mark.filterwarnings("ignore::beam.SuspiciousValue")
 def test_planted_grazes(count):
     """The highest peak before each stop is 1e-1 to 1e-12 of the gap above or below it: which is first?"""
-    rng, told = np.random.default_rng([54, count]), Counter()
-    while told.total() < count:
+    rng, counts = np.random.default_rng([54, count]), Counter()
+    while counts.total() < count:
         oscillator, start, length, stops, seen = views(rng)
         for _ in range(48 if seen else 0):
             h = rng.choice(PLANTED, len(seen), replace=False)
@@ -167,7 +163,7 @@ def test_planted_grazes(count):
             touches.sort()
             time, stop, allowed = touches[0]
             if blurred or (len(touches) > 2 and touches[1][0] - time <= allowed + touches[1][2]):
-                told["within rounding"] += 1
+                counts["within rounding"] += 1
                 continue
             until = length if stop is None else min(length, time + 1e-6 * oscillator.period)
             planted = replace(oscillator, stops=tuple(planted))
@@ -175,40 +171,35 @@ def test_planted_grazes(count):
             assert i.stop[:1].tolist() == ([] if stop is None else [stop])
             assert np.all(abs(i.clock[:1] - start.time - time) <= allowed)
             assert np.all(i.kind[:1] == ImpactKind.IMPACT)
-            told["free" if stop is None else "touches"] += 1
-    assert told["within rounding"] < 0.01 * told.total()
-    assert min(told["free"], told["touches"]) > 0.2 * count
+            counts["free" if stop is None else "touches"] += 1
+    assert counts["within rounding"] < 0.01 * counts.total()
+    assert min(counts["free"], counts["touches"]) > 0.2 * count
 
 
 @pytest.mark.filterwarnings("ignore::beam.SuspiciousValue")
 def test_a_graze_of_one_stop_goes_before_or_after_the_hit_of_another():
     """The gap of the first stop is its highest peak, rounded to a double."""
-    rng, told = np.random.default_rng(55), Counter()
-    while told.total() < 400:
+    rng, counts = np.random.default_rng(55), Counter()
+    while counts.total() < 400:
         oscillator, start, length, stops, seen = views(rng)
-        if len(seen) < 2:
-            continue
-        (motion, flight, signal, tops, highest), (_, _, other, peaks, top) = seen[:2]
-        at, gap = float(tops[np.argmax(signal(tops))]), float(top / (1 + Real(0.1)))
-        hit = float(judge(other, gap, length, peaks=peaks).time)
-        blurred = tip_rounding(with_gap(motion, float(highest)), *flight) > GRAZE_TOLERANCE * float(highest)
-        higher = signal(np.array([length])).max() > highest  # still rising at the end
-        if blurred or higher or abs(hit - at) < 1e-3 * length:
-            continue
-        both = (
-            replace(stops[0], gap=float(highest), law=newton(0.5)),
-            replace(stops[1], gap=gap, law=newton(0.5)),
-        )
-        found = simulate(
-            replace(oscillator, stops=both), start, duration=max(at, hit) + 1e-6 * length
-        ).impacts
-        if hit < at:
-            assert (found.stop[0], found.kind[0]) == (1, ImpactKind.IMPACT)
-            assert found.clock[0] - start.time == pytest.approx(hit, rel=1e-9)
-        else:
-            assert found.stop[:2].tolist() == [0, 1] and found.kind[0] != ImpactKind.STAY
-            if found.kind[0] == ImpactKind.GRAZE:  # else rounding has put the peak above the stop
-                assert found.clock[:2] - start.time == pytest.approx([at, hit], rel=1e-6)
-                assert np.all(found.deviations_start[0] == found.deviations_end[0])
-        told["hit" if hit < at else ("impact", "graze")[int(found.kind[0])]] += 1
-    assert min(told["graze"], told["hit"]) > 20 and told["impact"] < 3
+        for (one, view), (two, (_, _, other, peaks, top)) in permutations(zip(stops, seen, strict=True), 2):
+            motion, flight, signal, tops, highest = view
+            at, gap = float(tops[np.argmax(signal(tops))]), float(top / (1 + Real(0.1)))
+            hit, height = float(judge(other, gap, length, peaks=peaks).time), float(highest)
+            blurred = tip_rounding(with_gap(motion, height), *flight) > GRAZE_TOLERANCE * height
+            higher = signal(np.array([length])).max() > highest  # still rising at the end
+            if blurred or higher or abs(hit - at) < 1e-3 * length:
+                continue
+            both = replace(one, gap=height, law=newton(0.5)), replace(two, gap=gap, law=newton(0.5))
+            until = max(at, hit) + 1e-6 * length
+            found = simulate(replace(oscillator, stops=both), start, duration=until).impacts
+            if hit < at:
+                assert (found.stop[0], found.kind[0]) == (1, ImpactKind.IMPACT)
+                assert found.clock[0] - start.time == pytest.approx(hit, rel=1e-9)
+            else:
+                assert found.stop[:2].tolist() == [0, 1] and found.kind[0] != ImpactKind.STAY
+                if found.kind[0] == ImpactKind.GRAZE:  # else rounding has put the peak above the stop
+                    assert found.clock[:2] - start.time == pytest.approx([at, hit], rel=1e-6)
+                    assert np.all(found.deviations_start[0] == found.deviations_end[0])
+            counts["hit" if hit < at else ("impact", "graze")[int(found.kind[0])]] += 1
+    assert min(counts["graze"], counts["hit"]) > 20 and counts["impact"] < 3

@@ -73,7 +73,7 @@ law, speed, whole = CubicContact(stiffness=1e12), 2.0, sys.argv[1] == "whole"
 free, thrown = modes_on_stop(0.0, phi=0.5, law=law), State(displacement=[0.0], velocity=[2.0 * speed])
 # a mass of m = 4 kg goes (2 m v^2/k)^(1/4) deep, and the contact is 2.622 times as long as a way so far at v
 lasts = 2.0 * 1.3110287771460599 * (8.0 * speed**2 / 1e12) ** 0.25 / speed
-for method in (CentralDifference, GeneralisedAlpha, Splitting)[: 3 if whole else 2]:
+for method in (CentralDifference, GeneralisedAlpha, Splitting)[: 3 if whole else 1]:
     hits = [simulate(free, thrown, duration=0.02, method=method(step=h)).impacts for h in (4e-5, 2e-5, 1e-5)]
     errors = [abs(hit.end[0] - hit.start[0] - lasts) for hit in hits]
     assert np.log2(np.divide(errors[:-1], errors[1:])) == pytest.approx(2.0, abs=0.2), (method, errors)

@@ -78,8 +78,7 @@ def test_a_motion_against_another_integrator(cubic, excess: float, digits: float
 
 
 def test_factors_are_those_of_the_force() -> None:
-    one = mode(LINEAR).at(0.02)
-    levels = np.array([1.0, 1.01, 0.9, 1.2])
+    one, levels = mode(LINEAR).at(0.02), np.array([1.0, 1.01, 0.9, 1.2])
     run = one.orbit(one.steady(), 4, factors=levels)
     here, points = one.steady(), []
     for level in levels:

@@ -160,8 +160,7 @@ def test_period_ten_needs_another_period_or_frequency() -> None:
                 made = letter_map(23.40, free_period=period_of_spring, decay_rate=rate, restitution=tau)
                 assert maximal_period(made) == 11
     assert maximal_period(letter_map(23.40, free_period=0.04070)) == 10
-    assert maximal_period(letter_map(23.342)) == 10
-    assert maximal_period(letter_map(23.343)) == 11
+    assert maximal_period(letter_map(23.342)) == 10 and maximal_period(letter_map(23.343)) == 11
 
 
 def test_overdamped_map_adds_periods_and_has_no_fold() -> None:

@@ -16,8 +16,7 @@ def polynomial(roots: np.ndarray, sign: float) -> np.ndarray:
 
 @pytest.mark.parametrize("degree", [1, 2, 3, 5, 8])
 def test_first_rising_root_of_a_polynomial(degree):
-    generator = np.random.default_rng([14, degree])
-    none = 0
+    generator, none = np.random.default_rng([14, degree]), 0
     for _ in range(200):
         roots = generator.uniform(0.05, 1.3) + np.cumsum(generator.uniform(0.02, 0.3, degree))
         # negative at zero

@@ -65,12 +65,8 @@ def test_a_contact_of_several_modes_is_that_of_an_independent_integration(expone
     """State and time at the release, and the loss, by DOP853 in time."""
     law = PowerContact(stiffness=k, exponent=exponent, damping=damping)
     oscillator, n = spring(3, law, drive=(21.5, 1e-3)), 3
-    hit, phi, gap = (
-        simulate(oscillator, THROWN, duration=0.02).impacts,
-        oscillator.model.phi,
-        oscillator.stop.gap,
-    )
-    flight = accelerations(oscillator)
+    hit, phi = simulate(oscillator, THROWN, duration=0.02).impacts, oscillator.model.phi
+    flight, gap = accelerations(oscillator), oscillator.stop.gap
 
     def rates(t: float, x: np.ndarray) -> np.ndarray:
         depth, rate = max(phi @ x[:n] - gap, 0.0), phi @ x[n : 2 * n]

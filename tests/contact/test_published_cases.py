@@ -122,10 +122,8 @@ def exact_end(time: np.ndarray, depth: float = 0.0) -> np.ndarray:
 
     Down with velocity -1/2 from 1/2, held from t = 1 + 2 depth to t = 2, up to 1/2 again, down again.
     """
-    down = (1 - time) / 2
-    held = np.full_like(time, -depth)
-    rise = time / 2 - 1 - depth
-    fall = 2 + depth - time / 2
+    down, held = (1 - time) / 2, np.full_like(time, -depth)
+    rise, fall = time / 2 - 1 - depth, 2 + depth - time / 2
     return np.where(time < 1 + 2 * depth, down, np.where(time < 2, held, np.minimum(rise, fall)))
 
 
@@ -173,8 +171,7 @@ def test_bar_converges_with_the_first_power_of_the_number_of_modes(law: str, dep
     At depth 0 the plastic touch is a case of its own: see below.
     """
     found = bar_errors(law, depth)
-    assert -1.2 < rate(found.largest) < -0.85
-    assert -1.2 < rate(found.mean) < -0.8
+    assert -1.2 < rate(found.largest) < -0.85 and -1.2 < rate(found.mean) < -0.8
     assert np.all(MODES * found.largest < 0.6) and np.all(MODES * found.mean < 0.22)
     assert np.all(MODES * np.abs(found.release) < (0.36 if law != "elastic" else 1.4))
     # the touch comes before any law acts: exact by symmetry at depth 0, else the series' tail of higher order
@@ -223,8 +220,7 @@ def test_force_on_the_bar_is_one_half_throughout() -> None:
             thirds.append(float(weights @ (law.stiffness * depths)))
         errors.append([3 * third - 0.5 for third in thirds])
     scaled = MODES[:5, None] * np.array(errors)
-    assert np.all(np.abs(scaled) < 2.2)
-    assert np.all(np.abs(errors[-1]) < 0.02)
+    assert np.all(np.abs(scaled) < 2.2) and np.all(np.abs(errors[-1]) < 0.02)
 
 
 def test_contact_time_of_hertz() -> None:
@@ -246,14 +242,16 @@ def test_contact_time_of_hertz() -> None:
         middle = simulate(free_mass(mass, law), start, duration=end, times=[impact.start[0] + 0.5 * span])
         depth = float(middle.displacement[0, 0]) / math.sqrt(mass)
         assert depth == pytest.approx(law.greatest_approach(mass, speed), rel=1e-12)
+        assert impact.peak_force[0] == pytest.approx(stiffness * depth**1.5, rel=1e-12)
         assert abs(float(middle.velocity[0, 0])) < 1e-9 * speed * math.sqrt(mass)
         assert impact.rebound[0] == pytest.approx(-speed, rel=1e-13)
+        assert impact.impulse[0] == pytest.approx(2 * mass * speed, rel=1e-13)
 
 
 @pytest.mark.parametrize("restitution", [0.01, 0.03, 0.1, 0.3, 0.5, 0.8, 0.95, 0.999, 0.999999, 1.0])
 @pytest.mark.parametrize("speed", [1e-3, 0.24, 3.0])
 def test_rebound_of_hunt_and_crossley(restitution: float, speed: float) -> None:
-    """a - ln(1 + a) = -b - ln(1 - b): the mass leaves with the restitution asked for, to 1e-10."""
+    """a - ln(1 + a) = -b - ln(1 - b): the mass leaves with the restitution of the law, to 1e-10."""
     mass, stiffness = 0.005, 9.65e9
     law = HuntCrossley.with_restitution(stiffness=stiffness, restitution=restitution, velocity=speed)
 

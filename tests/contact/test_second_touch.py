@@ -4,20 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from oscillators import GAMMA, OMEGA, PHI, modes_on_stop, newton
+from oscillators import GAMMA, OMEGA, PHI, modes_on_stop, newton, slow
 
 from beam import Point
-from contact import (
-    HertzContact,
-    HuntCrossley,
-    ImpactOscillator,
-    LinearContact,
-    PowerContact,
-    State,
-    Stop,
-    TouchedAtOnce,
-    simulate,
-)
+from contact import ImpactOscillator, PowerContact, State, Stop, TouchedAtOnce, simulate
+from contact.laws import HertzContact, HuntCrossley, LinearContact
 
 LAWS = {
     "linear": LinearContact(stiffness=4e4),
@@ -61,11 +52,12 @@ def in_a_touch(law, side: int, rng: np.random.Generator) -> tuple:
 
 @pytest.mark.parametrize("side", [1, -1])
 @pytest.mark.parametrize("name", LAWS)
-def test_the_height_of_the_other_point_decides(name, side):
+@pytest.mark.parametrize("touches", [2, *slow(8)])
+def test_the_height_of_the_other_point_decides(name, side, touches):
     """The gap of the second stop is the highest position of its point in a touch, by samples of the states,
     and a little less or more."""
     rng = np.random.default_rng(list(LAWS).index(name))
-    for _ in range(4):
+    for _ in range(touches):
         start, times, height = in_a_touch(LAWS[name], side, rng)
         top, length = int(np.argmax(height)), times[-1] - start.time
         size = np.ptp(height)

@@ -33,8 +33,7 @@ def test_same_period_and_points_as_after_ten_thousand_cycles(name, frequency, ex
     waited = strobed.orbit(start, SETTLE_CYCLES - SETTLE_CYCLES % 128).end
     reference = strobed.orbit(waited, 128)
     period = period_of(reference.points, reference.impacts, largest_period=64, tolerance=1e-9 * strobed.scale)
-    assert found.period == period > 0
-    assert found.impacts == reference.impacts[-period:].sum()
+    assert found.period == period > 0 and found.impacts == reference.impacts[-period:].sum()
     cycle = reference.points[-period:]
     turned = (np.roll(cycle, k, axis=0) for k in range(period))
     assert min(np.max(np.abs(found.points[-period:] - one)) for one in turned) < 1e-8 * strobed.scale
@@ -51,8 +50,7 @@ def test_close_to_a_fold_the_proof_comes_long_before_the_repetition():
     strobed = strobed_at(name, frequency, fold.excess + 2e-7)
     proved = settle(strobed, start, most_cycles=100_000)
     repeated = settle(strobed, start, most_cycles=100_000, prove=False)
-    assert proved.period == repeated.period == 4
-    assert proved.cycles < repeated.cycles
+    assert proved.period == repeated.period == 4 and proved.cycles < repeated.cycles
     orbit = family.at_excess(fold.excess + 2e-7, family.at_speed(1.005 * fold.speed, fold))
     assert 0.98 < abs(orbit.multipliers[0]) < 1.0
 

@@ -28,12 +28,10 @@ def test_fold_and_second_impact_of_equation_1(frequency, period, excess, second,
     assert [event.kind for event in branch.events][:2] == ["fold", "grazing"]
     again, graze = (event.orbit for event in branch.events[:2])
     assert again.excess == pytest.approx(excess, abs=1e-13)
-    assert abs(graze.excess - second) <= 0.6 * digit
-    assert graze.admissible
+    assert abs(graze.excess - second) <= 0.6 * digit and graze.admissible
     for factor, expected in ((1 - 1e-6, 1), (1 + 1e-6, 2)):
         beside = family.at_speed(graze.speed * factor, graze)
-        assert touches(beside) == expected
-        assert beside.admissible == (expected == 1)
+        assert touches(beside) == expected and beside.admissible == (expected == 1)
 
 
 def test_where_contact_is_soft_a_branch_has_several_folds() -> None:
@@ -65,7 +63,7 @@ def test_where_contact_is_soft_a_branch_has_several_folds() -> None:
 
 
 def test_below_its_lowest_fold_a_branch_can_go_on_to_a_graze() -> None:
-    """A straight leaf with a ball of 2 g, 20 modes, 23.05 Hz: p8 folds at 1.17e-6, turns at 2.99e-6 and lives
+    """A straight leaf with a ball of 2 g, 20 modes, 23.05 Hz: p8 folds at 1.17e-6, turns at 2.99e-6 and goes
     on, stable, to 4.6e-7; there settled motions say so, too."""
     oscillator = on_stop(straight_leaf(20), 23.05, gap=FOLDED_GAP)
     family = Shooting(oscillator=oscillator, period=8)
@@ -98,8 +96,7 @@ def test_the_slope_is_the_derivative_of_the_excess() -> None:
 def test_orbits_are_found_down_to_grazing(name: str) -> None:
     oscillator = beam(22.20, LAWS[name])
     family, unit = Shooting(oscillator=oscillator, period=5), oscillator.unit_speed
-    excesses = []
-    orbit = family.at_speed(1e-2 * unit)
+    excesses, orbit = [], family.at_speed(1e-2 * unit)
     for part in (1e-3, 1e-4, 1e-5, 1e-6):
         orbit = family.at_speed(part * unit, orbit)
         assert orbit.residual < 1e-9
@@ -113,7 +110,7 @@ def test_orbits_are_found_down_to_grazing(name: str) -> None:
         assert excesses[3] == pytest.approx(0.5e-12, rel=1e-2 if name != "dashpot" else 0.8)
 
 
-def test_a_neighbour_near_grazing_is_not_taken_for_the_orbit_asked_for() -> None:
+def test_a_neighbour_near_grazing_is_not_taken_for_the_orbit() -> None:
     """Speeds that differ by less than the tolerance of the residual are different orbits all the same."""
     oscillator = equation_1(21.50)
     family, unit = Shooting(oscillator=oscillator, period=4), oscillator.unit_speed

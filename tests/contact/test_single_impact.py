@@ -29,8 +29,7 @@ def test_folds_of_equation_1_in_fifty_digits(frequency: float, period: int) -> N
     at_fold = equation_1(frequency, period).fold()
     with mp.workdps(50):
         half, f, tau = mp.mpf(MU) / 2, mp.mpf(frequency), mp.mpf(TAU)
-        pole = mp.mpc(-half, 2 * mp.pi / mp.mpf(T))
-        w = 2 * mp.pi * f
+        pole, w = mp.mpc(-half, 2 * mp.pi / mp.mpf(T)), 2 * mp.pi * f
         steady = 1 / (abs(pole) ** 2 - w**2 + 2j * half * w)
         span = mp.e ** (pole * period / f)
 
@@ -80,11 +79,11 @@ def test_many_modes_with_one_tip_value_are_equation_1() -> None:
     assert family.fold().speed / 0.01 == pytest.approx(plain.fold().speed, rel=1e-12)
 
 
-def test_another_law_needs_its_restitution_told() -> None:
+def test_another_law_needs_its_restitution() -> None:
     plain = many_modes("three modes")
     soft = replace(plain, stop=Stop(gap=0.012, law=LinearContact(stiffness=1e6)))
-    told = MaximalFamily.from_oscillator(soft, period=3, restitution=0.35)
-    assert told.fold().excess == MaximalFamily(oscillator=plain, period=3).fold().excess
+    given = MaximalFamily.from_oscillator(soft, period=3, restitution=0.35)
+    assert given.fold().excess == MaximalFamily(oscillator=plain, period=3).fold().excess
     with pytest.raises(TypeError, match="restitution"):
         MaximalFamily.from_oscillator(soft, period=3)
 

@@ -66,8 +66,7 @@ def test_planted_overshoots_are_found_and_none_is_invented(damping, size):
     paths = [0, 0]  # settled by the comparison, left
     for _ in range(12):
         single = oscillator(rng.uniform(20.5, 23.8), decay=DAMPINGS[damping], excess=0.02)
-        motion = single.motion()
-        u = rng.normal() * size * GAP
+        motion, u = single.motion(), rng.normal() * size * GAP
         v = rng.normal() * size * GAP * motion.omega[0]
         tip = Signal(motion, 0.0, np.array([u]), np.array([v]))
         peak = float(highest(tip, 0.0, 0.0, motion.period))
@@ -82,8 +81,7 @@ def test_planted_overshoots_are_found_and_none_is_invented(damping, size):
                 period = Period(replace(single, stop=replace(single.stop, gap=gap)))
                 fresh = (np.array([u]), np.array([v]), at_a_strobe())
                 status, impacts, left = period.fast(*fresh)
-                assert status == DONE
-                assert (impacts > 0) == (side > 0), (power, side, gap)
+                assert status == DONE and (impacts > 0) == (side > 0), (power, side, gap)
                 paths[left] += 1
     assert sum(paths) > 50
     if size == 0.05 and damping != "over-damped":
@@ -121,8 +119,7 @@ def test_a_peak_at_the_strobe_hides_no_crossing_of_the_period_before(damping):
     """A mode of the other sign has its steady peak late in the period; states that rise at its begin."""
     single = oscillator(20.9, decay=DAMPINGS[damping], excess=-0.05, participation=-1.0)
     period = Period(single)
-    motion = period.motion
-    rng = np.random.default_rng(5)
+    motion, rng = period.motion, np.random.default_rng(5)
     free = touching = 0
     for _ in range(300):
         u = -(motion.level + motion.tip_cosine) - 10 ** rng.uniform(-6, -1.5) * GAP
@@ -130,8 +127,7 @@ def test_a_peak_at_the_strobe_hides_no_crossing_of_the_period_before(damping):
         arrays = np.array([u]), np.array([v])
         outcome, _s = first_crossing(motion, 0.0, *arrays, motion.period, 0)
         status, impacts, _left = period.fast(*arrays, at_a_strobe())
-        assert status == DONE
-        assert (impacts == 0) == (outcome == FREE)
+        assert status == DONE and (impacts == 0) == (outcome == FREE)
         free += impacts == 0
         touching += impacts > 0
     assert free > 10 and touching > 10

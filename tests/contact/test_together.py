@@ -6,23 +6,17 @@ the non-negative least-squares solution of W^T p = u, W u = (1 + e) W v-.
 
 import numpy as np
 import pytest
-from oscillators import newton
+from oscillators import before_stops, newton
 from scipy.optimize import nnls
 
-from beam import ModalModel, Point
-from contact import HarmonicDrive, ImpactKind, ImpactOscillator, Regime, State, Stop, simulate
+from contact import HarmonicDrive, ImpactKind, ImpactOscillator, Regime, State, simulate
 
 
 def modes(rows, e, gaps, *, omega=0.0, decay=0.0, gamma=0.0, **more) -> ImpactOscillator:
     """Modes with a stop for each of the `rows`; a number holds for all modes or stops."""
     omega, decay, gamma, _ = np.broadcast_arrays(omega, decay, gamma, rows[0])
-    points = {f"{number}": Point(row=row) for number, row in enumerate(rows)}
-    each = zip(points, np.broadcast_to(e, len(rows)), np.broadcast_to(gaps, len(rows)), strict=True)
-    stops = [Stop(gap=gap, law=newton(one), at=name) for name, one, gap in each]
-    numbers = dict(omega=omega, decay_rate=decay, phi=rows[0], participation=gamma)
-    return ImpactOscillator(
-        model=ModalModel(**numbers, points=points, dimensionless=True), stops=stops, **more
-    )
+    each = zip(np.broadcast_to(gaps, len(rows)), np.broadcast_to(e, len(rows)), strict=True)
+    return before_stops(omega, decay, gamma, rows, [(gap, newton(one)) for gap, one in each], **more)
 
 
 def hit(rows, e, v, law="moreau", held=None):
@@ -102,15 +96,9 @@ EVEN, ODD = [[1.0, -0.8, 0.5, 0.3], [0.6, 0.9, -0.4, 0.7]], [[0.9, 0.7, -0.6, 0.
 FOUR = dict(omega=[1.0, 2.7, 5.1, 8.3, 1.9, 3.8, 6.6, 9.7], decay=[0.05] * 8)
 FOUR |= dict(gamma=[1.0, 0.6, 0.4, 0.3, 0.0, 0.0, 0.0, 0.0])
 # rows in even and odd modes, and e; numbers of the even and odd modes; drive and duration
+TWO_MODES = dict(omega=[1.0, 2.5], decay=[0.1, 0.2], gamma=[1.0, 0.0])
 MIRRORED = {
-    "two points": (
-        [[1.0]],
-        [[0.5]],
-        0.7,
-        dict(omega=[1.0, 2.5], decay=[0.1, 0.2], gamma=[1.0, 0.0]),
-        0.9,
-        60.0,
-    ),
+    "two points": ([[1.0]], [[0.5]], 0.7, TWO_MODES, 0.9, 60.0),
     "four points": (EVEN, ODD, 0.8, FOUR, 0.26 * np.pi, 3000.0),
 }
 

@@ -1,6 +1,7 @@
 """Largest force, impulse, duration and loss of a touch, and the time of rest, by other routes."""
 
 import math
+from dataclasses import replace
 from itertools import pairwise
 
 import mpmath
@@ -11,20 +12,17 @@ from scipy.integrate import simpson
 
 from beam import ModalModel
 from contact import (
-    ContactLaw,
     DelayedRestitution,
     HarmonicDrive,
-    HertzContact,
-    HuntCrossley,
     ImpactKind,
     ImpactOscillator,
     Impacts,
-    LinearContact,
     State,
     Stop,
     simulate,
 )
-from contact.integrators import CentralDifference, MoreauJean, Splitting
+from contact.integrators import CentralDifference, Integrator, MoreauJean, Splitting
+from contact.laws import ContactLaw, HertzContact, HuntCrossley, LinearContact
 
 K, G = 1e5, 9.81
 HERTZ = HertzContact(stiffness=1e8)
@@ -36,14 +34,20 @@ def mass(
 ) -> ImpactOscillator:
     """A free body of 1 kg before a stop."""
     model = ModalModel(omega=[0.0], decay_rate=[0.0], phi=[1.0], participation=[1.0], dimensionless=True)
-    return ImpactOscillator(
-        model=model, stop=Stop(gap=gap, law=law), drive=drive, load=None if load is None else [load]
-    )
+    force = None if load is None else [load]
+    return ImpactOscillator(model=model, stop=Stop(gap=gap, law=law), drive=drive, load=force)
 
 
-def thrown(law: ContactLaw, speed: float = 1.0) -> Impacts:
+def thrown(law: ContactLaw, speed: float = 1.0, **method: Integrator) -> Impacts:
     """The touch of a free body of 1 kg."""
-    return simulate(mass(law), State(displacement=[0.0], velocity=[speed]), duration=0.05).impacts
+    start = State(displacement=[0.0], velocity=[speed])
+    return simulate(mass(law), start, duration=0.05, **method).impacts
+
+
+def spring(law: ContactLaw, *decay: float) -> ImpactOscillator:
+    """Three modes driven at 22 Hz."""
+    rows = [154.0, 980.0, 2900.0], decay, [10.0, 9.0, 8.0], [0.1, 0.05, 0.02]
+    return modes_on_stop(*rows, law=law, drive=22.0)
 
 
 @pytest.mark.parametrize("damping", [0.0, 3.0, 100.0, 300.0, 330.0, 500.0])
@@ -59,20 +63,10 @@ def test_linear_contact_has_its_closed_form(damping):
     assert touch.loss[0] == pytest.approx(0.5 * (0.7**2 - touch.rebound[0] ** 2), rel=1e-13, abs=1e-14)
 
 
-def test_hertz_contact_has_its_closed_form():
-    touch, depth = thrown(HERTZ, 0.2), HERTZ.greatest_approach(1.0, 0.2)
-    assert touch.peak_force[0] == pytest.approx(HERTZ.stiffness * depth**1.5, rel=1e-14)
-    assert touch.impulse[0] == pytest.approx(0.4, rel=1e-14)
-    assert touch.duration[0] == pytest.approx(HERTZ.contact_time(1.0, 0.2), rel=1e-13)
-
-
 @pytest.mark.parametrize("law", [HERTZ, HuntCrossley(stiffness=1e8, dissipation=0.4), DASHPOT])
 def test_peak_of_many_modes_is_that_of_close_samples(law):
     """Three modes with several maxima in a touch; samples next to the largest are a second route."""
-    spring = modes_on_stop(
-        [154.0, 980.0, 2900.0], [3.0, 9.0, 20.0], [10.0, 9.0, 8.0], [0.1, 0.05, 0.02], law=law, drive=22.0
-    )
-    oscillator = spring.with_excess(0.4)
+    oscillator = spring(law, 3.0, 9.0, 20.0).with_excess(0.4)
     impacts = simulate(oscillator, periods=8).impacts
 
     def pushed(low: float, high: float) -> tuple[np.ndarray, np.ndarray]:
@@ -98,12 +92,8 @@ def test_peak_of_many_modes_is_that_of_close_samples(law):
 @pytest.mark.parametrize("length", [0.3, 0.40123, 0.9])
 def test_losses_close_the_energy_of_a_run_without_drive_and_damping(law, length):
     """Also where a contact or a stay is still closed at the end."""
-    rates = [0.0, 0.0, 0.0]
-    spring = modes_on_stop(
-        [154.0, 980.0, 2900.0], rates, [10.0, 9.0, 8.0], [0.1, 0.05, 0.02], law=law, drive=22.0
-    )
     load = np.array([40.0, 0.0, 0.0])
-    pressed = ImpactOscillator(model=spring.model, stop=spring.stop, load=load)
+    pressed = replace(spring(law, 0.0, 0.0, 0.0), drive=None, load=load)
     start = State(displacement=[-3e-3, 1e-4, 0.0], velocity=[0.3, 0.0, 0.2])
     run = simulate(pressed, start, duration=length)
 
@@ -126,24 +116,9 @@ def test_contact_still_closed_says_so():
     assert touch.impulse[0] == pytest.approx(1 - math.cos(math.pi / 6), rel=1e-12)
     assert touch.loss[0] == pytest.approx(0.5 * 0.25, rel=1e-12)
     later = simulate(mass(law), run.end, duration=0.05).impacts
-    assert later.kind[0] == ImpactKind.UNDER_WAY and later.peak_force[0] == pytest.approx(
-        math.sqrt(K), rel=1e-12
-    )
+    assert later.kind[0] == ImpactKind.UNDER_WAY
+    assert later.peak_force[0] == pytest.approx(math.sqrt(K), rel=1e-12)
     assert later.impulse[0] + touch.impulse[0] == pytest.approx(2.0, rel=1e-12)
-
-
-@pytest.mark.parametrize("e", [0.0, 0.5, 0.9, 0.99])
-def test_ball_comes_to_rest_at_its_time(e):
-    """sqrt(2 h/g) (1 + e)/(1 - e), all energy is lost, and the impulses balance the weight."""
-    rest, weight = math.sqrt(2.0 / G) * (1 + e) / (1 - e), np.array([G])
-    run = simulate(mass(newton(e), gap=1.0, load=G), duration=1.25 * rest)
-    impacts = run.impacts
-    stay = int(np.flatnonzero(impacts.kind == ImpactKind.STAY)[0])
-    assert impacts.start[stay] == pytest.approx(rest, rel=1e-13) and impacts.approach[stay] == 0.0
-    assert impacts.loss.sum() == pytest.approx(G, rel=1e-13)
-    assert impacts.impulse.sum() == pytest.approx(1.25 * rest * float(weight[0]), rel=1e-13)
-    assert impacts.peak_force[stay] == pytest.approx(G, rel=1e-14) and math.isnan(impacts.duration[stay])
-    assert np.all(np.isnan(impacts.peak_force[:stay]))
 
 
 @pytest.mark.parametrize("e, f, z", [(0.3, 5.0, 8e-3), (0.6, 5.0, 8e-3)])
@@ -154,25 +129,24 @@ def test_ball_on_a_shaken_table_comes_to_rest_at_the_end_of_its_hops(e, f, z):
     t, y, v, hop = mpmath.mpf(0), height, mpmath.mpf(0), mpmath.mpf("0.05")
     restitution, amplitude = mpmath.mpf(e), -mpmath.mpf(z)
     while hop > mpmath.mpf("1e-17"):
-        hop = mpmath.findroot(
-            lambda s, t=t, y=y, v=v: y + v * s - g * s**2 / 2 - amplitude * mpmath.sin(w * (t + s)), hop
-        )
+
+        def above(s, t=t, y=y, v=v):
+            return y + v * s - g * s**2 / 2 - amplitude * mpmath.sin(w * (t + s))
+
+        hop = mpmath.findroot(above, hop)
         t += hop
         table = amplitude * w * mpmath.cos(w * t)
         y, v = amplitude * mpmath.sin(w * t), table - restitution * (v - g * hop - table)
         hop = 2 * (v - table) / (g - amplitude * w**2 * mpmath.sin(w * t))
     oscillator = mass(newton(e), gap=0.01, load=G, drive=HarmonicDrive(frequency=f, amplitude=z))
-    run = simulate(
-        oscillator, State(displacement=[0.0], velocity=[-2 * math.pi * f * z]), duration=float(t) + 0.01
-    )
+    start = State(displacement=[0.0], velocity=[-2 * math.pi * f * z])
+    run = simulate(oscillator, start, duration=float(t) + 0.01)
     impacts = run.impacts
     (stay,) = np.flatnonzero(impacts.kind == ImpactKind.STAY)
     assert impacts.start[stay] == pytest.approx(float(t), abs=1e-12)
     assert oscillator.tip(impacts.displacement_start[stay]) == pytest.approx(0.01, abs=1e-17)
-    first = float(impacts.start[stay])
-    pressing = G + z * (2 * math.pi * f) ** 2 * np.sin(
-        2 * math.pi * f * np.linspace(first, run.end.time, 400)
-    )
+    angle = 2 * math.pi * f * np.linspace(impacts.start[stay], run.end.time, 400)
+    pressing = G + z * (2 * math.pi * f) ** 2 * np.sin(angle)
     assert impacts.peak_force[stay] == pytest.approx(max(pressing), rel=1e-5)
 
 
@@ -203,19 +177,12 @@ def test_methods_with_a_step_find_force_and_impulse_at_order_2(method):
     law = LinearContact(stiffness=K)
     exact, errors = thrown(law), []
     for step in (4e-6, 1e-6):
-        state = State(displacement=[0.0], velocity=[1.0])
-        found = simulate(mass(law), state, duration=0.05, method=method(step=step)).impacts
-        errors.append(
-            [abs(getattr(found, n)[0] / getattr(exact, n)[0] - 1) for n in ("peak_force", "impulse")]
-        )
+        found = thrown(law, method=method(step=step))
+        pairs = [(found.peak_force[0], exact.peak_force[0]), (found.impulse[0], exact.impulse[0])]
+        errors.append([abs(a / b - 1) for a, b in pairs])
     assert np.all(np.array(errors) < [[1e-5], [1e-6]])
 
 
 def test_percussions_are_the_impulse():
-    found = simulate(
-        mass(newton(0.5)),
-        State(displacement=[0.0], velocity=[1.0]),
-        duration=0.01,
-        method=MoreauJean(step=1e-5),
-    ).impacts
+    found = thrown(newton(0.5), method=MoreauJean(step=1e-5))
     assert found.impulse[0] == pytest.approx(1.5, rel=1e-12) and math.isnan(found.peak_force[0])
