@@ -19,14 +19,8 @@ from beam import ModalModel, Point
 from contact import HarmonicDrive, ImpactKind, ImpactOscillator, State, Stop, Trajectory, simulate
 from contact.flight.crossing import GRAZE_TOLERANCE
 from contact.flight.elementary import EPS
-<<<<<<< HEAD
-from contact.flight.modal_flow import steady_motion
-from contact.flight.tip import tip_rounding
-=======
-from contact.flight.modal_flow import steady_motion
-from contact.flight.tip import tip_rounding
+from contact.flight.modal_flow import steady_motion, tip_rounding
 from contact.laws import LinearContact
->>>>>>> work-54T
 
 PROBLEMS = {one["name"]: one for one in json.loads(Path(__file__).with_name("many_stops.json").read_text())}
 SLOW = 1e-5
