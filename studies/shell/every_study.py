@@ -34,7 +34,7 @@ from typing import TextIO
 from studies.shell.executors import duration, progress, say
 from studies.shell.files import SCHEMA, fingerprint, make_folder, write_atomically
 from studies.shell.options import parser_of
-from studies.shell.page import told_page
+from studies.shell.page import page_sentence
 from studies.shell.programs import (
     ALL,
     COMMAND,
@@ -44,20 +44,20 @@ from studies.shell.programs import (
     by_own_name,
     module_of,
     perform,
+    print_answer,
     run_time_of,
     run_times,
     studies,
-    tell,
 )
 from studies.shell.scene import Scene
-from studies.shell.study import Study, read_told
+from studies.shell.study import Study, scene_and_doubts
 
 OWN_OPTIONS = ("--all", "--fresh", "--json")
 """Not passed on to the studies."""
 
 
 def arguments_of(name: str, scene: Scene, given: Namespace, passed_on: Sequence[str]) -> list[str] | None:
-    """Arguments of a study, None if it is stored; of another scene or source it forgets what it has begun."""
+    """Arguments of a study, None if it is stored; after a change of scene or source it begins anew."""
     study: Study = getattr(importlib.import_module(module_of(name)), name)
     settings = {"quick": given.quick, "style": given.style, **study.defaults(given.quick)}
     try:
@@ -128,7 +128,7 @@ def keep_times(took: Mapping[str, float], quick: bool, table: Path) -> None:
 def run_all(given: Namespace, arguments: Sequence[str], output: TextIO) -> int:
     """Run what is not stored and write the page; returns the exit code."""
     begun = time.monotonic()
-    scene, doubtful = read_told(given.scene, given.overrides)
+    scene, doubtful = scene_and_doubts(given.scene, given.overrides)
     passed_on = [word for word in arguments if word not in OWN_OPTIONS]
     found = {name: arguments_of(name, scene, given, passed_on) for name in studies()}
     stored = [name for name, arguments in found.items() if arguments is None]
@@ -144,10 +144,10 @@ def run_all(given: Namespace, arguments: Sequence[str], output: TextIO) -> int:
     again = shlex.join([*COMMAND.split(), *(word for word in arguments if word != "--fresh")])
     rest = f"; go on with: {again}" if stopped else f": {', '.join(failed)}" if failed else ""
     say(f"{ALL}: {status} after {duration(time.monotonic() - begun)}{rest}")
-    say(told_page(Path(given.out)))
+    say(page_sentence(Path(given.out)))
     if given.json:
         answer = {"schema": SCHEMA, "study": "all", "status": status, "stored": stored}
-        tell({**answer, "exit_codes": codes, "exit_code": code}, output)
+        print_answer({**answer, "exit_codes": codes, "exit_code": code}, output)
     return code
 
 

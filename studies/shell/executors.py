@@ -47,20 +47,20 @@ def progress(label: str, total: int, unit: str) -> Iterator[Callable[..., None]]
 
     words = TextColumn("{task.description}"), TextColumn("{task.fields[done]}")
     columns = words[0], BarColumn(), words[1], TimeRemainingColumn()
-    told, lock, terminal = time.monotonic(), threading.Lock(), sys.stderr.isatty()
+    printed, lock, terminal = time.monotonic(), threading.Lock(), sys.stderr.isatty()
     console = Console(file=sys.stderr)
     with Progress(*columns, console=console, disable=not terminal, speed_estimate_period=math.inf) as bar:
         task = bar.add_task(label, total=total, done="")
 
         def count(steps: int = 1) -> None:
-            nonlocal told
+            nonlocal printed
             with lock:
                 bar.advance(task, steps)
                 now, known = time.monotonic(), bar.tasks[0]
                 done = _done(known.completed, total, unit, known.speed)
                 bar.update(task, done=done)
-                if not terminal and now - told >= INTERVAL:
-                    told, left = now, known.time_remaining
+                if not terminal and now - printed >= INTERVAL:
+                    printed, left = now, known.time_remaining
                     ahead = "" if left is None else f", {duration(left)} left"
                     say(f"{label}: {done}{ahead}")
 

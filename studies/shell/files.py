@@ -32,14 +32,14 @@ SCHEMA = 3
 
 def make_folder(folder: Path) -> Path:
     """The folder, made if need be."""
-    with told(f"results cannot be written to the folder {folder}"):
+    with explained(f"results cannot be written to the folder {folder}"):
         folder.mkdir(parents=True, exist_ok=True)
     return folder
 
 
 def require_writable(folder: Path) -> None:
     """Refuse a folder that takes no files or cannot be made, before a computation; nothing is left there."""
-    with told(f"results cannot be written to the folder {folder}"):
+    with explained(f"results cannot be written to the folder {folder}"):
         there = next(path for path in (folder, *folder.parents) if path.exists())
         with tempfile.TemporaryFile(dir=there):
             pass
@@ -48,7 +48,7 @@ def require_writable(folder: Path) -> None:
 def write_atomically(path: Path, content: bytes) -> Path:
     """Write or replace the file at `path`."""
     temporary = path.with_name(f".{path.name}.{uuid4().hex}")
-    with told(f"{path} cannot be written"):
+    with explained(f"{path} cannot be written"):
         try:
             with temporary.open("xb") as stream:
                 stream.write(content)
@@ -62,8 +62,8 @@ def write_atomically(path: Path, content: bytes) -> Path:
 
 
 @contextmanager
-def told(what: str) -> Iterator[None]:
-    """An OSError inside says `what` and the reason of the system."""
+def explained(what: str) -> Iterator[None]:
+    """Put `what` in front of an OSError's reason."""
     try:
         yield
     except OSError as error:
@@ -104,7 +104,7 @@ def source() -> str:
 
 
 def fingerprint(scene: object, settings: Mapping[str, object]) -> str:
-    """Equal for runs of a study whose numbers are the same: those of one source, scene and settings."""
+    """Equal for runs of a study whose numbers are the same: one source, scene and settings."""
     matters = {key: value for key, value in settings.items() if key != "fresh"}  # begins anew, ends the same
     return hashlib.sha256(json_text([source(), scene, matters]).encode()).hexdigest()
 

@@ -1,6 +1,6 @@
 """Films of a spring in motion, as gif and as mp4.
 
-    scenery = Scenery.of(modes, ball_radius=2.5e-3, gaps=[0.0119], swing=0.013)
+    scenery = Scenery.of(modes, ball_radius=2.5e-3, gaps=[0.0119], amplitude=0.013)
     write_film(run, "motion", "The motion.", stage_of(scenery), moments)
 
 Each moment (`studies.shell.painter`) is drawn with its lines of text above and, if wanted, a strip below.

@@ -20,7 +20,7 @@ from typing import Annotated, Literal, NoReturn, TextIO, Union, get_args, get_or
 from beam import InvalidValue
 from studies.shell.executors import require_place
 from studies.shell.files import SCHEMA
-from studies.shell.programs import DONE, by_own_name, perform, tell
+from studies.shell.programs import DONE, by_own_name, perform, print_answer
 
 Answer = Mapping[str, object]
 
@@ -139,7 +139,7 @@ def tool(parser: Parser, argv: Sequence[str] | None, work: Callable[..., tuple[s
         print(f"{parser.prog}: {sentence}", file=sys.stderr)
         if given.json:
             answer = {"schema": SCHEMA, "study": name, "status": "done", **done, "exit_code": DONE}
-            tell(answer, output)
+            print_answer(answer, output)
         return DONE
 
     return perform(name, parser.prog, arguments, answered)
@@ -163,11 +163,11 @@ def add_options(parser: Parser, function: Callable[..., object]) -> dict[str, ob
         if get_origin(kind) in (Union, types.UnionType):  # T | None
             kind = next(part for part in get_args(kind) if part is not types.NoneType)
         default = defaults[name] = entry.default
-        flag, told = f"--{name.replace('_', '-')}", words.replace("%", "%%")  # argparse formats its help
+        flag, text = f"--{name.replace('_', '-')}", words.replace("%", "%%")  # argparse formats its help
         if default not in (None, ()) and kind is not bool:
             shown = " ".join(map(str, default)) if isinstance(default, tuple) else default
-            told += f" (default: {shown})"
-        about: dict[str, object] = {"default": argparse.SUPPRESS, "help": told}
+            text += f" (default: {shown})"
+        about: dict[str, object] = {"default": argparse.SUPPRESS, "help": text}
         if kind is bool:
             about["action"] = "store_true"
         elif get_origin(kind) is Literal:
@@ -179,7 +179,7 @@ def add_options(parser: Parser, function: Callable[..., object]) -> dict[str, ob
             bounds = next((mark for mark in marks if isinstance(mark, Within)), BOUNDS.get(kind))
             reader = partial(bounds.read, kind) if bounds else kind
             about |= {"type": reader, "metavar": kind.__name__.upper()}
-            about["help"] = f"{told}; {bounds}" if bounds in marks else told
+            about["help"] = f"{text}; {bounds}" if bounds in marks else text
             if POSITIONAL in marks:
                 flag, about = name, {**about, "nargs": "?", "metavar": name.upper(), "default": default}
         group.add_argument(flag, **about)  # type: ignore[arg-type]

@@ -1,6 +1,6 @@
 """A spring with its ball, its plates and its base, drawn in space: a picture of one moment.
 
-    scenery = Scenery.of(modes, ball_radius=2.5e-3, gaps=[0.0119], swing=0.013)
+    scenery = Scenery.of(modes, ball_radius=2.5e-3, gaps=[0.0119], amplitude=0.013)
     picture = stage_of(scenery)(Moment(points=displacements, base=np.zeros(3)))
 
 matplotlib draws, without any graphics library: the outer faces that look to the viewer, the farthest first,
@@ -70,13 +70,13 @@ class Moment:
 class Scenery:
     """What is drawn: the solid spring at rest, the plates, and what holds everything.
 
-    `plates` and `room` are boxes, the lowest and the highest corner, shape (2, 3) [m]; `strip` is a colour,
+    `plates` and `extent` are boxes, the lowest and the highest corner, shape (2, 3) [m]; `strip` is a colour,
     and `more` are boxes that stand still, with their colours.
     """
 
     mesh: SpringMesh
     plates: Sequence[Array]
-    room: Array
+    extent: Array
     strip: str
     more: tuple[tuple[Array, str], ...] = ()
 
@@ -86,9 +86,9 @@ class Scenery:
         return points
 
     @staticmethod
-    def of(modes: Modes, *, ball_radius: float, swing: float, gaps: Sequence[float] = ()) -> Scenery:
-        """The scenery of a spring that swings by `swing` [m], with plates at `gaps` [m] from the ball, those
-        below zero on the other side."""
+    def of(modes: Modes, *, ball_radius: float, amplitude: float, gaps: Sequence[float] = ()) -> Scenery:
+        """The scenery of a spring that moves by `amplitude` [m]; plates at `gaps` [m] from the ball, negative
+        ones on its other side."""
         mesh, spring = solid_spring(modes, ball_radius=ball_radius), modes.discretization.spring
         rows = int(np.sum(mesh.part == STRIP))
         if rows < ROWS:
@@ -104,11 +104,11 @@ class Scenery:
             if abs(beside[0]) > abs(beside[1]):  # a ball beyond the end: the strip passes the plate
                 plate[:, 0] += math.copysign(half - 0.75 * ball_radius, beside[0])
             plates.append(plate)
-        cloud = np.concatenate([mesh.points - swing * DRIVE, mesh.points + swing * DRIVE, *plates])
-        room, section = np.array([cloud.min(axis=0), cloud.max(axis=0)]), spring.sections[0]
+        cloud = np.concatenate([mesh.points - amplitude * DRIVE, mesh.points + amplitude * DRIVE, *plates])
+        extent, section = np.array([cloud.min(axis=0), cloud.max(axis=0)]), spring.sections[0]
         brass = isinstance(section, StripSection) and metal_of(section.material) == "brass"
         strip = BRASS if brass else OTHER
-        return Scenery(mesh=mesh, plates=plates, room=room, strip=strip)
+        return Scenery(mesh=mesh, plates=plates, extent=extent, strip=strip)
 
 
 def box(corners: Array, pieces: int = 8) -> Array:
@@ -138,13 +138,13 @@ class View:
     half: Array
 
     @staticmethod
-    def of(towards: Array, room: Array, aspect: float) -> View:
-        """The view from `towards` of all that is in the box `room`; `aspect` is height over width."""
+    def of(towards: Array, extent: Array, aspect: float) -> View:
+        """The view from `towards` of all that is in the box `extent`; `aspect` is height over width."""
         towards = towards / np.linalg.norm(towards)
         right = np.cross(DRIVE, towards)
         axes = np.array([right / np.linalg.norm(right), np.zeros(3), towards])
         axes[1] = np.cross(towards, axes[0])
-        corners = np.array(list(product(*room.T))) @ axes.T
+        corners = np.array(list(product(*extent.T))) @ axes.T
         low, high = corners.min(axis=0), corners.max(axis=0)
         wide = 0.53 * max(high[0] - low[0], (high[1] - low[1]) / aspect)
         return View(axes=axes, centre=0.5 * (low + high) @ axes, half=np.array([wide, wide * aspect]))
@@ -195,7 +195,7 @@ def stage_of(
     under = [plate[1, 1] < scenery.mesh.points[triangles, 1].min() for plate in scenery.plates]
     away = np.repeat([0.0, *under, 0.0], [len(corners), *map(len, plates), sum(len(one) for one, _ in still)])
     colours = np.array([to_rgb(one) for one in [*named, *(c for faces, c in still for _ in faces)]])
-    view, dots = View.of(towards, scenery.room, size[1] / size[0]), 100
+    view, dots = View.of(towards, scenery.extent, size[1] / size[0]), 100
     figure = Figure(figsize=(size[0] / dots, size[1] / dots), dpi=dots)
     canvas, axes = FigureCanvasAgg(figure), figure.add_axes((0.0, 0.0, 1.0, 1.0), xlim=(-1, 1), ylim=(-1, 1))
     seen = axes.add_collection(PolyCollection([], linewidths=0.4, antialiaseds=False))  # no seams
@@ -223,15 +223,15 @@ def draw_rig(
     """The spring with ball, plate and base, in true scale, displaced by modal `coordinates` [m], one row a
     position: the first as it is, the others paler and with their names."""
     radius, gap, size = scene.tip.ball_radius_m, scene.stop.gap_m, (1274, 980)
-    scenery = Scenery.of(modes, ball_radius=radius, gaps=[gap], swing=gap)
+    scenery = Scenery.of(modes, ball_radius=radius, gaps=[gap], amplitude=gap)
     mesh, wide = scenery.mesh, 1.3 * float(np.abs(scenery.mesh.points[:, 2]).max())
     base = np.array([(-0.8 * wide, -0.5 * wide, -wide), (0.1 * wide, 0.5 * wide, wide)])
-    room = np.array([np.minimum(scenery.room[0], base[0]), np.maximum(scenery.room[1], base[1])])
-    scenery = replace(scenery, room=room, more=((base, COLOURS[LAYER]),))
+    extent = np.array([np.minimum(scenery.extent[0], base[0]), np.maximum(scenery.extent[1], base[1])])
+    scenery = replace(scenery, extent=extent, more=((base, COLOURS[LAYER]),))
     moving = np.flatnonzero(modes.coupled)[: len(coordinates[0])]
-    swung = np.tensordot(np.array(coordinates), mesh.shapes[moving], 1)
-    stage, view = stage_of(scenery, FROM_THE_TIP, size), View.of(FROM_THE_TIP, room, size[1] / size[0])
-    seen, *others = (stage(Moment(points=points, base=np.zeros(3))).astype(float) for points in swung)
+    moved = np.tensordot(np.array(coordinates), mesh.shapes[moving], 1)
+    stage, view = stage_of(scenery, FROM_THE_TIP, size), View.of(FROM_THE_TIP, extent, size[1] / size[0])
+    seen, *others = (stage(Moment(points=points, base=np.zeros(3))).astype(float) for points in moved)
     for share, one in zip((0.3, 0.2), others, strict=False):
         pale = 255.0 - share * (255.0 - one)
         seen = np.where(np.all(seen == 255.0, axis=2, keepdims=True), pale, seen)
@@ -242,11 +242,11 @@ def draw_rig(
         ("plate", plate.mean(axis=0), (-16, 12), "right"),
         ("base", base.mean(axis=0), (0, -42), "center"),
     ]
-    marks += [("ball", ball + swung[0][mesh.triangles[0, 0]], (-52, 8), "right")]
+    marks += [("ball", ball + moved[0][mesh.triangles[0, 0]], (-52, 8), "right")]
     if np.any(mesh.part == LAYER):
-        place = (mesh.points + swung[0])[mesh.hexahedra[len(mesh.hexahedra) // 9, 0]]
+        place = (mesh.points + moved[0])[mesh.hexahedra[len(mesh.hexahedra) // 9, 0]]
         marks += [("damping tape", place, (-24, 36), "right")]
-    marks += [(n, (mesh.points + one)[end], (5, 0), "left") for n, one in zip(names, swung, strict=True) if n]
+    marks += [(n, (mesh.points + one)[end], (5, 0), "left") for n, one in zip(names, moved, strict=True) if n]
     for name, point, offset, side in marks:
         line = {"arrowstyle": "-", "color": "0.3"} if name in ("ball", "damping tape") else None
         look: Any = {"textcoords": "offset points", "ha": side, "va": "center", "arrowprops": line}

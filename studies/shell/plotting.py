@@ -1,8 +1,8 @@
 """House style of the figures.
 
 Drawn without a display and without global state, at the width of a journal's column or page, so that the
-letters have their printed size. Colours are those of Okabe and Ito (jfly.uni-koeln.de/color), which
-colour-blind readers can tell apart; series differ in marker and line as well, so that a grey copy still
+letters have their printed size. The colours are by Okabe and Ito (jfly.uni-koeln.de/color), which
+colour-blind readers can distinguish; series differ in marker and line as well, so that a grey copy still
 reads. The same data give the same bytes: neither format carries a date or a version.
 
     @in_house_style
@@ -63,7 +63,7 @@ UP, DOWN = (BLUE, BLUE, 1.3, 3), (VERMILION, "none", 2.6, 2)
 """Strobe points while the amplitude is raised and lowered: edge, face, size, order."""
 
 PALE = 0.35
-"""Share of the colour that is left where a motion did not settle: its points are those of a moment."""
+"""Share of the colour that is left where a motion did not settle: its points are of a moment."""
 
 EXCESS, HYSTERESIS = "excess $F/F_g - 1$", "hysteresis $1 - F_m/F_g$"
 """Names of the two quantities that most axes show."""
@@ -147,7 +147,7 @@ def new_figure(
 ) -> tuple[Figure, Any]:
     """A figure of `width` by `height` [m] and its axes: one, or an array as from `Figure.subplots`.
 
-    A slide has its own size; what needs much room on paper gets more there, too.
+    A slide has its own size; a large figure on paper is larger there, too.
     """
     if _style.get() == "slide":
         height = min(max(SLIDE, 0.7 * height, 0.4 * width), LARGEST_SLIDE)

@@ -1,4 +1,4 @@
-"""One run of a study, seen from the study: what it is asked for besides its scene, and what it leaves behind.
+"""One run of a study, seen from the study: what it gets besides its scene, and what it stores.
 
     results/NAME/summary.json     what was found; NaN and infinity are null
                  *.npz, *.csv     arrays and tables

@@ -7,9 +7,9 @@
     if __name__ == "__main__":
         raise SystemExit(ends.main())
 
-Keyword-only arguments are the options; `--help` prints the docstring of the module; exit codes are those of
-`studies.shell.programs`, 3 for `run.failed` or a ContactError that escapes. Interrupted by Ctrl-C or SIGTERM
-(a KeyboardInterrupt in the study) it keeps what was stored and tells the command that goes on. A second
+Keyword-only arguments are the options; `--help` prints the docstring of the module; exit codes stand in
+`studies.shell.programs`: 3 for `run.failed` or a ContactError that escapes. Interrupted by Ctrl-C or SIGTERM
+(a KeyboardInterrupt in the study) it keeps what was stored and names the command that goes on. A second
 signal, or one that comes where nothing can be raised (in a callback of the compiler), ends it at once.
 """
 
@@ -37,7 +37,15 @@ from studies.shell import programs
 from studies.shell.executors import duration
 from studies.shell.files import SCHEMA
 from studies.shell.options import STYLES, add_options, parser_of
-from studies.shell.programs import DONE, FAILED_CELLS, INTERRUPTED, as_program, perform, run_time_of, tell
+from studies.shell.programs import (
+    DONE,
+    FAILED_CELLS,
+    INTERRUPTED,
+    as_program,
+    perform,
+    print_answer,
+    run_time_of,
+)
 from studies.shell.run import Run
 from studies.shell.scene import Scene, one_stop, read_scene
 
@@ -107,11 +115,11 @@ class Study:
         parser = parser_of(command, f"{account}\n{run_time_of([self.name])}")
         options = add_options(parser, self.function)
         given = vars(parser.read(argv, output))
-        scene, doubtful = read_told(given["scene"], given["overrides"])
+        scene, doubtful = scene_and_doubts(given["scene"], given["overrides"])
         if given["dump_scene"]:
             values = {"scene": scene.values(), "provenance": scene.provenance()}
             whole = {"schema": SCHEMA, "study": self.name, **values}
-            tell(whole if given["json"] else scene.dump().rstrip(), output)
+            print_answer(whole if given["json"] else scene.dump().rstrip(), output)
             return DONE
         if not self.many_stops:
             one_stop(scene)
@@ -141,7 +149,7 @@ class Study:
                 failed = f"; {len(run.failures)} failed: {run.failures[0]}" if run.failures else ""
                 run.say(f"{took}; {len(run.files)} files in {run.folder}{failed}")
             if given["json"]:
-                tell({**summary, "exit_code": code}, output)
+                print_answer({**summary, "exit_code": code}, output)
 
         with _signals(run, lambda: close(INTERRUPTED, "interrupted", {})):
             code, status, results = self._compute(run, chosen)
@@ -153,12 +161,12 @@ class Study:
     def _compute(self, run: Run, options: Mapping[str, object]) -> tuple[int, str, Mapping[str, object]]:
         """Exit code, status and results of the run."""
         try:
-            with warnings.catch_warnings():  # a study varies the scene on purpose; what the user gave is told
+            with warnings.catch_warnings():  # a study varies the scene on purpose
                 warnings.simplefilter("ignore", SuspiciousValue)
-                asked = self.at(run.scene, options) if self.at else ()
+                conditions = self.at(run.scene, options) if self.at else ()
                 if self.needs:
                     alone = replace(run.scene, stops=())  # modes are chosen with the plate of [stop] alone
-                    chosen, why = least_modes(alone, self.needs, *asked)
+                    chosen, why = least_modes(alone, self.needs, *conditions)
                     run.choose_modes(replace(chosen, stops=run.scene.stops), why)
                 scene = run.adopt(*with_restitution(run.scene))
                 for sentence in doubts(scene):
@@ -170,14 +178,14 @@ class Study:
                 return INTERRUPTED, "interrupted", {}
             if not isinstance(error, ContactError):
                 raise
-            run.failed(type(error).__name__, error, say=False)  # the last line tells it
+            run.failed(type(error).__name__, error, say=False)  # it stands in the last line
             return FAILED_CELLS, "failed", {}
         if run.failures:
             return FAILED_CELLS, "finished with failed cells", results
         return DONE, "done", results
 
 
-def read_told(name: str, overrides: Sequence[str]) -> tuple[Scene, list[str]]:
+def scene_and_doubts(name: str, overrides: Sequence[str]) -> tuple[Scene, list[str]]:
     """The scene of a command line, and sentences on what is suspicious in it."""
     with warnings.catch_warnings(record=True) as found:
         warnings.simplefilter("always", SuspiciousValue)
@@ -223,7 +231,9 @@ def _signals(run: Run, leave: Callable[[], None]) -> Iterator[None]:
         for number in (signal.SIGINT, signal.SIGTERM):
             if signal.getsignal(number) is not signal.SIG_IGN:  # nohup and background jobs of a shell
                 signals[number] = signal.signal(number, signalled)
-    sys.unraisablehook = lambda told: stop() if issubclass(told.exc_type, KeyboardInterrupt) else lost(told)
+    sys.unraisablehook = lambda fault: (
+        stop() if issubclass(fault.exc_type, KeyboardInterrupt) else lost(fault)
+    )
     try:
         yield
     finally:

@@ -1,4 +1,4 @@
-"""The page: what is stored is on it, what is missing or broken is told, nothing is loaded from elsewhere."""
+"""The page: what is stored is on it, what is missing or broken is named, nothing is loaded from elsewhere."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from page_judge import assert_balanced, assert_fit, seen
 
 from studies import letter, report
 from studies.shell import plotting
-from studies.shell.page import judged_points, told_page, write_page
+from studies.shell.page import judged_points, page_sentence, write_page
 from studies.shell.page.documentation import module_names, write_site
 from studies.shell.page.words import prose
 from studies.shell.programs import studies
@@ -97,7 +97,7 @@ def test_the_page_counts_the_points_and_names_one_command_for_the_rest(tmp_path,
     assert (places["p3"], places["p10"], places["bands"]) == ("figure-2", "figure-1", "point-bands")
     assert text.count("python -m studies --all --quick</code>") == 1
     assert missing and not any(f"python -m studies {name}" in text for name in missing)
-    assert told_page(tmp_path).endswith("python -m studies --all --quick makes the rest")
+    assert page_sentence(tmp_path).endswith("python -m studies --all --quick makes the rest")
 
 
 @pytest.mark.filterwarnings("ignore::beam.SuspiciousValue")
@@ -119,7 +119,7 @@ def test_the_page_of_every_study_names_no_command_for_the_rest(tmp_path, letter_
         run = Run(study=study, folder=tmp_path / study, scene=letter_scene, command="")
         run.close("done", {"rows": []})
     assert "studies --all" not in write_page(tmp_path)[0].read_text().partition("<h2")[0]
-    assert "makes the rest" not in told_page(tmp_path)
+    assert "makes the rest" not in page_sentence(tmp_path)
 
 
 @pytest.mark.slow

@@ -155,7 +155,7 @@ def test_a_folder_that_cannot_be_written_is_refused_before_anything_is_computed(
     assert "file" in capsys.readouterr().err
 
 
-def test_failed_cells_are_told_kept_and_exit_code_3(tmp_path):
+def test_failed_cells_are_kept_and_bring_exit_code_3(tmp_path):
     code, folder = start("--fail", out=tmp_path)
     assert code == 3 and summary_of(folder)["failures"] == ["cell 1: no number"]
     code, folder = start("--what", "contact", out=tmp_path)
@@ -193,10 +193,10 @@ def test_json_is_one_object_and_nothing_else_on_standard_output(tmp_path, capsys
     assert answer["schema"] == 3 and answer["exit_code"] == code
 
 
-def test_suspicious_values_are_told_and_kept(tmp_path, capsys):
+def test_suspicious_values_are_printed_and_kept(tmp_path, capsys):
     _, folder = start("--set", "scan.born_excess=0.5", out=tmp_path)
     assert "warning: scan.born_excess" in capsys.readouterr().err
-    assert sum("scan.born_excess" in told for told in summary_of(folder)["warnings"]) == 1
+    assert sum("scan.born_excess" in doubt for doubt in summary_of(folder)["warnings"]) == 1
 
 
 def test_help_prints_the_docstring_and_the_dump_the_scene(tmp_path, capsys):

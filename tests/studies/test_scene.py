@@ -82,9 +82,9 @@ def test_a_dump_says_meaning_unit_default_and_provenance_of_every_key():
     for key, known in KEYS.items():
         name = key.partition(".")[2]
         places = [i for i, line in enumerate(lines) if line.startswith(f"{name} = ")]
-        told = [lines[i - 2 : i] for i in places]
-        assert any(known.meaning in meaning and known.provenance in says for meaning, says in told), key
-        assert known.unit in ("", "1") or any(f"unit {known.unit}" in says for _, says in told), key
+        comments = [lines[i - 2 : i] for i in places]
+        assert any(known.meaning in meaning and known.provenance in says for meaning, says in comments), key
+        assert known.unit in ("", "1") or any(f"unit {known.unit}" in says for _, says in comments), key
     assert any("here given" in line for line in lines)
 
 

@@ -60,7 +60,7 @@ def film(
     modes, radius = modes_of(scene), scene.tip.ball_radius_m
     gaps = [stop.side * stop.gap for stop in oscillator.stops if stop.at == "tip"]
     orbit = film_orbit(oscillator, settled.end, settled.period, frames=frames, rate=RATE)
-    scenery = Scenery.of(modes, ball_radius=radius, gaps=gaps, swing=float(np.abs(orbit.tip).max()))
+    scenery = Scenery.of(modes, ball_radius=radius, gaps=gaps, amplitude=float(np.abs(orbit.tip).max()))
     drawn, magnification = drawn_shapes(scenery.mesh, modes, orbit.coordinates)
     true, _ = drawn_shapes(scenery.mesh, modes, orbit.coordinates, 1.0)
     enlarged = [f"higher modes are drawn {magnification:g} times larger"] if magnification > 1.0 else []

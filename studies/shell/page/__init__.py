@@ -276,7 +276,7 @@ def write_page(results: Path) -> tuple[Path, list[Stored], list[str]]:
     return write_atomically(folder / "index.html", text.encode()), found, missing
 
 
-def told_page(results: Path) -> str:
+def page_sentence(results: Path) -> str:
     """Write the page and say so; a page that cannot be written is no reason for a study to fail."""
     try:
         path, found, missing = write_page(results)

@@ -6,9 +6,9 @@
     [Hz]
     single_mode_at(scene, f), nordmark_at(scene, f)                  # Eq. (1) and Eqs. (2), (3) of the letter
 
-Whatever is wrong is a `SceneError` of one sentence that names the key: the constructors of `beam` and
-`contact` refuse, and their names are put into those of the scene here. What is legal and can hardly be meant
-brings a `SuspiciousValue` warning. Reading a scene solves no eigenvalue problem.
+Whatever is wrong is a `SceneError` of one sentence that names the key. The constructors of `beam` and
+`contact` refuse, and the keys of the scene replace the names of their arguments. What is legal and can hardly
+be meant brings a `SuspiciousValue` warning. Reading a scene solves no eigenvalue problem.
 """
 
 from __future__ import annotations
@@ -232,15 +232,15 @@ def beyond_linear(scene: Scene) -> str | None:
     if scene.drive.kind != "harmonic" or scene.single_mode.restitution == OPEN:
         return None
     shifts = period_shifts(scene)
-    moved = {f"{f:g}": shift for f, (shift, room) in shifts.items() if abs(shift) > room}
+    moved = {f"{f:g}": shift for f, (shift, margin) in shifts.items() if abs(shift) > margin}
     if not moved:
         return None
     most = max(moved.values(), key=abs)
     feels = f"small deviations feel a period {most:+.2%} off" if math.isfinite(most) else "no motion grazes"
     return (
         f"at the gap, stop.gap_m = {scene.stop.gap_m:g} m, the free frequency is {shift_at_gap(scene):+.2%} "
-        f"off that of small swings and {feels}, which can change the periods born at {', '.join(moved)} Hz; "
-        f"the model is linear, and `{COMMAND} shape` says what is left of them"
+        f"off that of small amplitudes and {feels}, which can change the periods born at "
+        f"{', '.join(moved)} Hz; the model is linear, and `{COMMAND} shape` says what is left of them"
     )
 
 
@@ -275,5 +275,5 @@ def of_the_letter(scene: Scene) -> bool:
 
 
 def periods_of(scene: Scene) -> Mapping[float, int]:
-    """The letter's frequencies, as those of the scene's spring [Hz], with the letter's periods."""
+    """The letter's frequencies, scaled to the scene's spring [Hz], with the letter's periods."""
     return {corresponding(scene, f): m for f, m in letter.PERIODS.items()}

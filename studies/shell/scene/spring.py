@@ -114,7 +114,7 @@ def spring_of(scene: Scene) -> LeafSpring:
 
 
 def elements_of(scene: Scene, spring: LeafSpring) -> tuple[int, ...]:
-    """Number of elements on each piece: those asked for, shared by length on a leg, or the default."""
+    """Number of elements on each piece: as given, shared by length on a leg, or the default."""
     keys, counts = scene.spring, []
     for piece, usual in zip(spring.centreline.pieces, beam.default_elements(spring), strict=True):
         straight = piece.curvature == 0.0
@@ -133,18 +133,18 @@ def modes_of(scene: Scene, count: int | None = None) -> Modes:
     wanted = scene.kept_modes if count is None else count
     spring = spring_of(scene)
     discretization = beam.assemble(spring, elements_of(scene, spring))
-    asked = min(discretization.n_dofs, wanted if spring.centreline.is_straight else 2 * wanted + 1)
+    tried = min(discretization.n_dofs, wanted if spring.centreline.is_straight else 2 * wanted + 1)
     while True:
-        modes = beam.natural_modes(discretization, asked)
+        modes = beam.natural_modes(discretization, tried)
         coupled = np.flatnonzero(modes.coupled)
         if coupled.size >= wanted:
             break
-        if asked == discretization.n_dofs:
+        if tried == discretization.n_dofs:
             raise SceneError(
                 f"modes.count must be at most {coupled.size}, the coupled modes of this mesh, not {wanted}: "
                 "keep fewer or give spring.elements_per_leg and spring.elements_on_arc more elements"
             )
-        asked = min(2 * asked, discretization.n_dofs)
+        tried = min(2 * tried, discretization.n_dofs)
     count = int(coupled[wanted - 1]) + 1
     shapes, omega = modes.shapes[:, :count], modes.omega[:count]
     energies = discretization.strain_energies(shapes).sum(axis=(0, 1))
@@ -212,7 +212,7 @@ def backbone_of(scene: Scene) -> beam.Backbone:
 
 
 def shift_at_gap(scene: Scene) -> float:
-    """What the amplitude of the gap changes in the free frequency, relative to small swings [1]."""
+    """What the amplitude of the gap changes in the free frequency, relative to small amplitudes [1]."""
     backbone = backbone_of(scene)
     return backbone.kappa * (scene.stop.gap_m / backbone.length) ** 2
 

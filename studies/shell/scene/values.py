@@ -100,7 +100,7 @@ class Scene:
         }  # no empty list of stops
 
     def provenance(self) -> dict[str, str]:
-        """Dotted key -> letter, calibrated, assumed (a default), or what `replace` was told (else given)."""
+        """Dotted key -> letter, calibrated, assumed (a default), or as given to `replace`."""
         origins = dict(self.origins)
         return {
             key: known.provenance
@@ -281,4 +281,4 @@ def doubts(scene: Scene) -> Iterator[str]:
     }
     for name, ratio in ratios.get(damping.kind, {}).items() if shaped else ():
         if ratio > 0.5:
-            yield f"{name} makes a damping ratio of {ratio:.3g}; above 0.5 no mode swings"
+            yield f"{name} makes a damping ratio of {ratio:.3g}; above 0.5 no mode oscillates"
