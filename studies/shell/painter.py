@@ -1,10 +1,10 @@
-"""A spring with its ball, its plates and its base, drawn in space: a picture of one moment.
+"""A spring with its ball, its plates and its base, drawn in space: the picture of one moment.
 
     scenery = Scenery.of(modes, ball_radius=2.5e-3, gaps=[0.0119], amplitude=0.013)
     picture = stage_of(scenery)(Moment(points=displacements, base=np.zeros(3)))
 
 matplotlib draws, without any graphics library: the outer faces that look to the viewer, the farthest first,
-in parallel projection. `Moment` says where everything is, and which plates are touched.
+in parallel projection. `Moment` holds positions, touched plates and lines of text. A graph may stand below.
 """
 
 from __future__ import annotations
@@ -25,13 +25,18 @@ from studies.shell.scene.values import Scene
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+    from matplotlib.text import Text
 
 Array = NDArray[np.float64]
 Picture = NDArray[np.uint8]
 """Rows, columns, and red, green, blue."""
 
-WIDTH, HEIGHT = 880, 400
-"""Of a picture, in points; both even, as video wants them."""
+WIDTH, HEIGHT, GRAPH_HEIGHT = 880, 400, 150
+"""Size of a picture and of the graph below it, in points; even numbers, as video needs them."""
+
+DOTS = 100
+"""Points an inch."""
 
 ROWS = 120
 """Rows of cells along the spring, at least: a bend looks round."""
@@ -58,12 +63,13 @@ PLATE, TOUCHED = "#8C9AA8", "#FF7A1A"
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Moment:
     """Displacements of the points of the mesh relative to the base, shape (n_points, 3), and of the base
-    [m]; whether each plate is touched; lines of text above."""
+    [m]; whether each plate is touched; lines of text above; place of the mark in the graph below."""
 
     points: Array
     base: Array
     touched: Sequence[bool] = ()
     lines: Sequence[str] = ()
+    mark: tuple[float, float] = (np.nan, np.nan)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -172,13 +178,31 @@ def outline(places: Array) -> Array:
     return found
 
 
+def lines_above(figure: Figure, moment: Moment) -> list[Text]:
+    """Write the lines of a moment at the top; the last is marked while a plate is touched."""
+    found: list[Text] = []
+    (width, height) = figure.canvas.get_width_height()
+    for row, line in enumerate(moment.lines):
+        marked = row == len(moment.lines) - 1 and any(moment.touched)
+        look: Any = {"color": TOUCHED if marked else "#5A5A5A" if row else "black", "animated": True}
+        place = 12 / width, 1.0 - (8 + 24 * row) / height
+        found.append(figure.text(*place, line, fontsize=11.5, va="top", **look))
+    return found
+
+
 Stage = Callable[[Moment], Picture]
 
 
 def stage_of(
-    scenery: Scenery, towards: Array = TOWARDS_VIEWER, size: tuple[int, int] = (WIDTH, HEIGHT)
+    scenery: Scenery,
+    towards: Array = TOWARDS_VIEWER,
+    size: tuple[int, int] = (WIDTH, HEIGHT),
+    graph: Callable[[Axes], object] | None = None,
 ) -> Stage:
-    """What turns a moment into a picture of `size` points, seen from `towards`."""
+    """Return a function from a moment to a picture of `size` points, seen from `towards`.
+
+    `graph` draws axes that stand below each picture, with the mark of its moment.
+    """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.collections import PolyCollection
     from matplotlib.colors import to_rgb
@@ -195,12 +219,26 @@ def stage_of(
     under = [plate[1, 1] < scenery.mesh.points[triangles, 1].min() for plate in scenery.plates]
     away = np.repeat([0.0, *under, 0.0], [len(corners), *map(len, plates), sum(len(one) for one, _ in still)])
     colours = np.array([to_rgb(one) for one in [*named, *(c for faces, c in still for _ in faces)]])
-    view, dots = View.of(towards, scenery.extent, size[1] / size[0]), 100
-    figure = Figure(figsize=(size[0] / dots, size[1] / dots), dpi=dots)
-    canvas, axes = FigureCanvasAgg(figure), figure.add_axes((0.0, 0.0, 1.0, 1.0), xlim=(-1, 1), ylim=(-1, 1))
-    seen = axes.add_collection(PolyCollection([], linewidths=0.4, antialiaseds=False))  # no seams
-    (edge,) = axes.plot([], [], color=TOUCHED, linewidth=2.5)
+    view, (width, height) = View.of(towards, scenery.extent, size[1] / size[0]), size
+    height += GRAPH_HEIGHT if graph else 0
+    below = 1.0 - size[1] / height
+    figure = Figure(figsize=(width / DOTS, height / DOTS), dpi=DOTS)
+    canvas, place = FigureCanvasAgg(figure), (0.0, below, 1.0, 1.0 - below)
+    axes = figure.add_axes(place, xlim=(-1, 1), ylim=(-1, 1))
     axes.axis("off")
+    moving: Any = {"animated": True}
+    seen = axes.add_collection(PolyCollection([], linewidths=0.4, antialiaseds=False, **moving))  # no seams
+    (edge,) = axes.plot([], [], color=TOUCHED, linewidth=2.5, **moving)
+    artists = [seen, edge]
+    if graph:
+        from studies.shell.plotting import house_style
+
+        with house_style():
+            graph(lower := figure.add_axes((0.07, 0.3 * below, 0.87, 0.65 * below)))
+        (mark,) = lower.plot([], [], "o", markersize=7, **moving)
+        artists.append(mark)
+    canvas.draw()
+    still_part = canvas.copy_from_bbox(figure.bbox)
 
     def picture(moment: Moment) -> Picture:
         moved = [plate + moment.base for plate in plates]
@@ -211,7 +249,14 @@ def stage_of(
         for plate, touched in zip(moved, moment.touched, strict=False):
             rims += [outline(view(plate.reshape(-1, 3))), gap] if touched else []
         edge.set_data(*np.concatenate(rims).T)
-        canvas.draw()
+        texts = lines_above(figure, moment)
+        if graph:
+            mark.set(data=np.reshape(moment.mark, (2, 1)), color=TOUCHED if any(moment.touched) else "black")
+        canvas.restore_region(still_part)
+        for artist in [*artists, *texts]:
+            figure.draw_artist(artist)
+        for text in texts:
+            text.remove()
         return np.asarray(canvas.buffer_rgba(), dtype=np.uint8)[..., :3].copy()
 
     return picture

@@ -2,9 +2,16 @@
 
     scene = read_scene("letter", ["drive.frequencies_hz=[22.2]"])    # a scene of ours by name, or any file
     spring_of(scene) -> modes_of(scene) -> model_of(scene)           # beam: drawing, modes, what impacts see
-    beam_at(scene, f)                                                # the spring on its stop, driven at f
-    [Hz]
+    beam_at(scene, f)                                                # the spring on its stops, at f [Hz]
     single_mode_at(scene, f), nordmark_at(scene, f)                  # Eq. (1) and Eqs. (2), (3) of the letter
+
+The files
+    ``key``      one key: default, unit, limits, and the check of a value
+    ``keys``     every key of a scene, by section
+    ``values``   `Scene`: the values, from TOML and overrides; its dump with comments
+    ``law``      the contact law of a scene
+    ``spring``   spring, modes and modal model of a scene
+Here stand reading, checks that need several sections, oscillators, and drive frequencies of other springs.
 
 Whatever is wrong is a `SceneError` of one sentence that names the key. The constructors of `beam` and
 `contact` refuse, and the keys of the scene replace the names of their arguments. What is legal and can hardly
