@@ -81,9 +81,8 @@ class Column:
             return None
         if value is None or isinstance(value, bool | int | float | str):
             return value
-        raise TypeError(
-            f"{self.field} of {type(row).__name__} is a {type(value).__name__}: a cell is one value"
-        )
+        kinds = type(row).__name__, type(value).__name__
+        raise TypeError(f"{self.field} of {kinds[0]} is a {kinds[1]}: a cell is one value")
 
 
 def usual_words(name: str) -> str:
@@ -148,8 +147,6 @@ def print_table(
 
 def _shown(value: object) -> str:
     """A cell of a table on the terminal."""
-    if isinstance(value, float):
-        return f"{value:.5g}"
-    return (
-        "-" if value is None else {True: "yes", False: "no"}[value] if isinstance(value, bool) else str(value)
-    )
+    if value is None or isinstance(value, bool):
+        return {None: "-", True: "yes", False: "no"}[value]
+    return f"{value:.5g}" if isinstance(value, float) else str(value)

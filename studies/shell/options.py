@@ -97,17 +97,10 @@ class Parser(argparse.ArgumentParser):
 def add_scene(parser: Parser) -> Callable[..., object]:
     """Add the options that name and change the scene; returns what adds another one to them."""
     scene = parser.add_argument_group("the scene").add_argument
-    scene(
-        "--scene", default="letter", metavar="FILE.toml", help="a file, or the name of one in studies/scenes"
-    )
-    scene(
-        "--set",
-        action="append",
-        default=[],
-        metavar="section.key=value",
-        dest="overrides",
-        help="change one key of the scene; may be repeated",
-    )
+    words = "a file, or the name of one in studies/scenes"
+    scene("--scene", default="letter", metavar="FILE.toml", help=words)
+    words = "change one key of the scene; may be repeated"
+    scene("--set", action="append", default=[], metavar="section.key=value", dest="overrides", help=words)
     return scene
 
 

@@ -91,13 +91,12 @@ def first_line(path: Path) -> str:
 
 def chapters_in_words() -> str:
     """The chapters with one line for each study, then the tools."""
-    found = [(first_line(FOLDER / name / "__init__.py"), chapter(name)) for name in CHAPTERS]
-    found.append(("Tools", {name: programs()[name] for name in TOOLS}))
-    blocks = [
-        "\n".join([title, *(f"    {name:<18} {first_line(path)}" for name, path in each.items())])
-        for title, each in found
-    ]
-    return "\n\n".join(blocks)
+    found = {first_line(FOLDER / name / "__init__.py"): chapter(name) for name in CHAPTERS}
+    found["Tools"] = {name: programs()[name] for name in TOOLS}
+    lines = {
+        title: [f"    {n:<18} {first_line(path)}" for n, path in own.items()] for title, own in found.items()
+    }
+    return "\n\n".join("\n".join([title, *own]) for title, own in lines.items())
 
 
 def overview() -> str:

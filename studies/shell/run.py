@@ -238,14 +238,8 @@ class Run:
         """Write what every study leaves; returns the summary."""
         self.closed = True
         settings = {**self._settings, "workers": self.workers, "executor": self.executor}
-        common = {
-            "schema": SCHEMA,
-            "study": self.study,
-            "status": status,
-            "settings": settings,
-            "provenance": self.scene.provenance(),
-            "warnings": list(self.warnings),
-        }
+        common = {"schema": SCHEMA, "study": self.study, "status": status, "settings": settings}
+        common |= {"provenance": self.scene.provenance(), "warnings": list(self.warnings)}
         wall_time = round(self.wall_time, 3)
         summary = {
             **common,

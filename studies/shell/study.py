@@ -25,7 +25,7 @@ import threading
 import types
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, TextIO, cast
 
@@ -53,17 +53,13 @@ Function = Callable[..., Mapping[str, object]]
 At = Callable[[Scene, Mapping[str, Any]], tuple[Sequence[float], float]]
 
 
-def study(
-    *,
-    needs: Mapping[str, float] | None = None,
-    quick: Mapping[str, object] | None = None,
-    at: At | None = None,
-    many_stops: bool = False,
-) -> Callable[[Function], Study]:
-    """Decorator of the one function of a study.
+@dataclass(frozen=True, kw_only=True)
+class Study:
+    """A study; `main` is its command line, calling it runs its function.
 
     Parameters
     ----------
+    function : function of scene, run and options
     needs : mapping of quantity to tolerance
         What its numbers rest on: where the scene leaves modes.count open it gets the least number of modes
         that gives these quantities (``least_model``).
@@ -74,18 +70,10 @@ def study(
     many_stops : bool
         Whether it takes a scene with [[stops]]; any other study refuses one.
     """
-    return lambda function: Study(
-        function=function, needs=dict(needs or {}), quick=dict(quick or {}), at=at, many_stops=many_stops
-    )
-
-
-@dataclass(frozen=True, kw_only=True)
-class Study:
-    """A study; `main` is its command line, calling it runs its function."""
 
     function: Function
-    needs: Mapping[str, float]
-    quick: Mapping[str, object]
+    needs: Mapping[str, float] = field(default_factory=dict)
+    quick: Mapping[str, object] = field(default_factory=dict)
     at: At | None = None
     many_stops: bool = False
 
@@ -183,6 +171,11 @@ class Study:
         if run.failures:
             return FAILED_CELLS, "finished with failed cells", results
         return DONE, "done", results
+
+
+def study(**about: Any) -> Callable[[Function], Study]:
+    """Decorator of the one function of a study; the arguments are the fields of `Study`."""
+    return lambda function: Study(function=function, **about)
 
 
 def scene_and_doubts(name: str, overrides: Sequence[str]) -> tuple[Scene, list[str]]:

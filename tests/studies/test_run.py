@@ -23,6 +23,7 @@ import pytest
 from beam import InvalidValue
 from contact import NotPeriodic
 from studies import ROOT
+from studies.__main__ import main
 from studies.shell.columns import UNITS, columns_of
 from studies.shell.digits import written
 from studies.shell.files import write_atomically
@@ -128,25 +129,25 @@ def test_keyword_arguments_are_options(tmp_path):
     assert summary_of(folder)["options"][0] == 5
 
 
-@pytest.mark.parametrize(
-    ("argv", "named"),
-    [
-        (["--pionts", "3"], "--points"),
-        (["--points", "0"], "--points"),
-        (["--excess", "nan"], "--excess"),
-        (["--colour", "green"], "--colour"),
-        (["--span", "1"], "--span"),
-        (["stray"], "stray"),
-        (["--set", "stop.gpa_m=1"], "stop.gap_m"),
-        (["--scene", "lettre"], "letter"),
-        (["--what", "value"], "the value is wrong"),
-    ],
-)
-def test_wrong_use_is_one_sentence_and_exit_code_2(tmp_path, capsys, argv, named):
-    code, _ = start(*argv, out=tmp_path)
+WRONG_USE = {
+    "--pionts 3": "--points",
+    "--points 0": "--points",
+    "--excess nan": "--excess",
+    "--colour green": "--colour",
+    "--span 1": "--span",
+    "stray": "stray",
+    "--set stop.gpa_m=1": "stop.gap_m",
+    "--scene lettre": "letter",
+    "--what value": "the value is wrong",
+}
+
+
+@pytest.mark.parametrize("argv", WRONG_USE)
+def test_wrong_use_is_one_sentence_and_exit_code_2(tmp_path, capsys, argv):
+    code, _ = start(*argv.split(), out=tmp_path)
     out, err = capsys.readouterr()
-    lines = [line for line in err.splitlines() if not line.startswith("warning: ")]
-    assert code == 2 and len(lines) == 1 and named in lines[0] and out == ""
+    (line,) = [line for line in err.splitlines() if not line.startswith("warning: ")]
+    assert code == 2 and WRONG_USE[argv] in line and out == ""
 
 
 def test_a_folder_that_cannot_be_written_is_refused_before_anything_is_computed(tmp_path, capsys):
@@ -261,21 +262,14 @@ def test_each_table_says_what_its_columns_hold_even_without_rows(tmp_path, lette
         run.table("others", [calls], "Others.", of=Cell)
 
 
-@pytest.mark.parametrize(
-    ("value", "text"),
-    [
-        (-6.2729e-4, "−6.273 × 10⁻⁴"),
-        (99999.6, "1 × 10⁵"),
-        (-0.0119, "−0.0119"),
-        (-0.0, "0"),
-        (40, "40"),
-        (9.9996, "10"),
-        (1.05e11, "1.05 × 10¹¹"),
-        (math.inf, "∞"),
-    ],
-)
-def test_a_number_is_written_in_four_digits_and_reads_back(value, text):
-    assert written(value) == text
+NUMBERS = {-6.2729e-4: "−6.273 × 10⁻⁴", 99999.6: "1 × 10⁵", -0.0119: "−0.0119", -0.0: "0", 40: "40"}
+NUMBERS |= {9.9996: "10", 1.05e11: "1.05 × 10¹¹", math.inf: "∞"}
+
+
+@pytest.mark.parametrize("value", NUMBERS)
+def test_a_number_is_written_in_four_digits_and_reads_back(value):
+    text = written(value)
+    assert text == NUMBERS[value]
     back = text.replace("−", "-").replace("∞", "inf").translate(str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789"))
     assert float(back.replace(" × 10", "e")) == pytest.approx(value, rel=5e-4)
 
@@ -301,27 +295,33 @@ def test_an_executor_that_is_not_there_is_refused(tmp_path, letter_scene, place,
         pass
 
 
-def test_an_unknown_study_is_answered_with_the_nearest_and_the_chapters():
-    command = [sys.executable, "-m", "studies", "transitons"]
-    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
-    assert done.returncode == 2 and "did you mean transitions?" in done.stderr and not done.stdout
-    assert all(f"    {name} " in done.stderr for name in names())
+def test_an_unknown_study_is_answered_with_the_nearest_and_the_chapters(capsys):
+    assert main(["transitons"]) == 2
+    out, err = capsys.readouterr()
+    assert "did you mean transitions?" in err and not out and all(f"    {name} " in err for name in names())
 
 
-def test_a_study_that_is_run_as_a_module_is_refused():
-    command = [sys.executable, "-m", "studies.experiment.hysteresis", "--help"]
-    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
-    assert done.returncode == 2 and not done.stdout
-    assert done.stderr == "a study runs as python -m studies NAME; --list gives the names\n"
+def test_a_script_without_options_refuses_them(capsys):
+    with pytest.raises(SystemExit, match="2"):
+        main(["tour", "--scene"])
+    assert "--scene is refused" in capsys.readouterr().err
 
 
-def test_a_foreign_package_of_the_same_name_is_refused(tmp_path):
+PROCESSES = {
+    "studies.experiment.hysteresis --help": (2, "a study runs as python -m studies NAME; --list gives"),
+    "studies": (1, "pip uninstall beam"),
+}
+
+
+@pytest.mark.parametrize("argv", PROCESSES)
+def test_a_study_as_a_module_and_a_foreign_package_of_the_same_name_are_refused(tmp_path, argv):
+    code, words = PROCESSES[argv]
     (tmp_path / "beam").mkdir()
     (tmp_path / "beam" / "__init__.py").write_text("")
+    command, place = [sys.executable, "-m", *argv.split()], ROOT if code == 2 else tmp_path
     env = os.environ | {"PYTHONPATH": str(ROOT)}
-    command = [sys.executable, "-m", "studies"]
-    done = subprocess.run(command, cwd=tmp_path, env=env, capture_output=True, text=True)
-    assert done.returncode == 1 and "pip uninstall beam" in done.stderr
+    done = subprocess.run(command, cwd=place, env=env, capture_output=True, text=True)
+    assert done.returncode == code and words in done.stderr and not done.stdout
 
 
 def test_importing_the_studies_changes_nothing():
@@ -335,14 +335,6 @@ assert seen() == before
 """
     env = {name: value for name, value in os.environ.items() if not name.endswith("_NUM_THREADS")}
     subprocess.run([sys.executable, "-c", code], cwd=ROOT, env=env, check=True)
-
-
-def test_a_script_without_options_refuses_them(tmp_path):
-    env = os.environ | {"PYTHONPATH": str(ROOT)}
-    command = [sys.executable, "-m", "studies", "tour", "--scene"]
-    done = subprocess.run(command, cwd=tmp_path, env=env, capture_output=True, text=True)
-    assert done.returncode == 2 and not list(tmp_path.iterdir())
-    assert "--scene is refused" in done.stderr
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, pytest.param(signal.SIGTERM, marks=pytest.mark.slow)])

@@ -154,33 +154,33 @@ def test_a_bug_of_a_constructor_passes_as_itself():
         Scene().make(lambda thickness: thickness + "m", {"thickness": "spring.thickness_m"})
 
 
-@pytest.mark.parametrize(
-    ("overrides", "named"),
-    [
-        (["spring.tape_thickness_m=0"], "spring.tape_thickness_m"),
-        (["damping.kind=measured"], "damping.measured_rates_per_s"),
-        (["spring.kind=modal_data"], "modal_data"),
-        (["contact.law=linear", "tip.mass_kg=0"], "contact.stiffness_n_per_m"),
-        (["spring.kind=straight_strip", "spring.end_support=pinned"], "tip.arc_fraction"),
-    ],
-)
-def test_what_does_not_go_together_is_refused(overrides, named):
-    assert named in refusal(*overrides)
+TOGETHER = {
+    "spring.tape_thickness_m=0": "spring.tape_thickness_m",
+    "damping.kind=measured": "damping.measured_rates_per_s",
+    "spring.kind=modal_data": "modal_data",
+    "contact.law=linear tip.mass_kg=0": "contact.stiffness_n_per_m",
+    "spring.kind=straight_strip spring.end_support=pinned": "tip.arc_fraction",
+}
 
 
-@pytest.mark.parametrize(
-    ("override", "nearest"),
-    [
-        ("spring.thicknes_m=1", "spring.thickness_m"),
-        ("spring.mass_kg=1", "tip.mass_kg"),
-        ("sprng.width_m=1", "spring.width_m"),
-        ("stop.gap=1", "stop.gap_m"),
-        ("scan.record_cycle=3", "scan.record_cycles"),
-    ],
-)
-def test_an_unknown_key_is_answered_with_the_nearest(override, nearest):
+@pytest.mark.parametrize("overrides", TOGETHER)
+def test_what_does_not_go_together_is_refused(overrides):
+    assert TOGETHER[overrides] in refusal(*overrides.split())
+
+
+UNKNOWN = {
+    "spring.thicknes_m=1": "spring.thickness_m",
+    "spring.mass_kg=1": "tip.mass_kg",
+    "sprng.width_m=1": "spring.width_m",
+    "stop.gap=1": "stop.gap_m",
+    "scan.record_cycle=3": "scan.record_cycles",
+}
+
+
+@pytest.mark.parametrize("override", UNKNOWN)
+def test_an_unknown_key_is_answered_with_the_nearest(override):
+    nearest, (section, _, rest) = UNKNOWN[override], override.partition(".")
     assert refusal(override).endswith(nearest)
-    section, _, rest = override.partition(".")
     with pytest.raises(SceneError, match=nearest.replace(".", r"\.") + "$"):
         scene_from_text(f"[{section}]\n{rest}")
 
@@ -211,24 +211,21 @@ def test_any_value_of_any_key_is_taken_or_refused(key, value):
             assert scene_from_text(scene.dump()) == scene
 
 
-@pytest.mark.parametrize(
-    ("text", "value"),
-    [
-        ("stop.gap_m = 1e-2 ", 0.01),
-        ("drive.frequencies_hz=[22.2, 23]", [22.2, 23]),
-        ("spring.kind=cantilever", "cantilever"),
-        ('spring.kind="cantilever"', "cantilever"),
-        ("modal_data.file=a=b.csv", "a=b.csv"),
-        ("spring.kind=1\n[stop]", "1\n[stop]"),
-    ],
-)
-def test_override_values_are_toml_or_bare_text(text, value):
-    assert parse_override(text) == (text.partition("=")[0].strip(), value)
+OVERRIDES = {
+    "stop.gap_m = 1e-2 ": 0.01,
+    "drive.frequencies_hz=[22.2, 23]": [22.2, 23],
+    "spring.kind=cantilever": "cantilever",
+    'spring.kind="cantilever"': "cantilever",
+    "modal_data.file=a=b.csv": "a=b.csv",
+    "spring.kind=1\n[stop]": "1\n[stop]",
+}
 
 
-@pytest.mark.parametrize("text", ["stop.gap_m", "gap_m=1", "", "=", "stop.gap_m 3"])
-def test_an_override_needs_a_dotted_key_and_a_value(text):
-    assert "section.key=value" in refusal(text)
+def test_override_values_are_toml_or_bare_text_of_a_dotted_key():
+    for text, value in OVERRIDES.items():
+        assert parse_override(text) == (text.partition("=")[0].strip(), value)
+    for text in ("stop.gap_m", "gap_m=1", "", "=", "stop.gap_m 3"):
+        assert "section.key=value" in refusal(text)
 
 
 def test_the_last_override_wins_and_no_drive_needs_no_gap():

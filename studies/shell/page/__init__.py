@@ -177,17 +177,10 @@ def _table(path: Path, about: Mapping[str, object]) -> Shown:
     known = known if len(known) == len(names) else [{"heading": words.cell(name)} for name in names]
     full = [n for n in range(len(names)) if any(row[n] for row in rows if len(row) == len(names))]
     units = [f" ({one['unit']})" if one.get("unit") else "" for one in known]
-    headings = [
-        (f"{one.get('heading')}{unit}", str(one.get("note") or ""))
-        for one, unit in zip(known, units, strict=True)
-    ]
-    return Shown(
-        name=path.stem,
-        caption=str(about.get("holds") or path.name),
-        headings=[headings[n] for n in full],
-        rows=[[row[n] for n in full] for row in rows if len(row) == len(names)],
-        long=len(rows) > MOST_ROWS,
-    )
+    headings = [(f"{known[n].get('heading')}{units[n]}", str(known[n].get("note") or "")) for n in full]
+    shown = [[row[n] for n in full] for row in rows if len(row) == len(names)]
+    caption, long = str(about.get("holds") or path.name), len(rows) > MOST_ROWS
+    return Shown(name=path.stem, caption=caption, headings=headings, rows=shown, long=long)
 
 
 def read_results(results: Path) -> list[Stored]:
@@ -250,17 +243,12 @@ def write_page(results: Path) -> tuple[Path, list[Stored], list[str]]:
     )
     first = found[0]
     environment.filters |= {"prose": words.prose, "cell": words.cell}
-    chapters = [
-        (
-            first_line(FOLDER / name / "__init__.py").rstrip("."),
-            [one for one in found if one.study in chapter(name)],
-        )
-        for name in CHAPTERS
-    ]
+    titles = [first_line(FOLDER / name / "__init__.py").rstrip(".") for name in CHAPTERS]
+    parts = [[one for one in found if one.study in chapter(name)] for name in CHAPTERS]
     text = environment.get_template("page.html.j2").render(
         first=first,
         letters=letters,
-        chapters=[(title, own) for title, own in chapters if own],
+        chapters=[(title, own) for title, own in zip(titles, parts, strict=True) if own],
         picture=next((figure for one in found for figure in one.figures), None),
         rig=next((figure for one in found for figure in one.figures if figure.name == "rig"), None),
         short=[(one.study, one.findings[0]) for one in found if one.findings][:MOST_IN_SHORT],
@@ -292,8 +280,5 @@ def in_words(path: Path, found: Sequence[Stored], missing: Sequence[str]) -> str
     """The page in one sentence, with the command that completes it."""
     count = f"{len(found)} of {len(found) + len(missing)}" if missing else f"all {len(found)}"
     page = f"page of {count} studies, {path.stat().st_size / 1e6:.1f} MB: {path}"
-    return (
-        f"{page}; {words.command_for_the_rest(str(found[0].manifest.get('command') or ''))} makes the rest"
-        if missing
-        else page
-    )
+    command = words.command_for_the_rest(str(found[0].manifest.get("command") or ""))
+    return f"{page}; {command} makes the rest" if missing else page

@@ -25,19 +25,9 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
+import contact
 from beam import Backbone, ModalModel, Refusal, suspect
-from contact import (
-    Band,
-    ContactError,
-    ContactLaw,
-    HarmonicDrive,
-    ImpactOscillator,
-    NewtonRestitution,
-    NonlinearMode,
-    NordmarkMap,
-    Stop,
-    band,
-)
+from contact import ContactError, ContactLaw, HarmonicDrive, ImpactOscillator, NewtonRestitution, Stop
 from studies import ROOT, letter
 from studies.shell.programs import COMMAND
 from studies.shell.scene.key import OPEN as OPEN
@@ -188,23 +178,25 @@ def restitution_of(scene: Scene) -> NewtonRestitution:
     return scene.make(NewtonRestitution, {"local_restitution": "single_mode.restitution"})
 
 
-def nordmark_at(scene: Scene, frequency: float) -> NordmarkMap:
+def nordmark_at(scene: Scene, frequency: float) -> contact.NordmarkMap:
     """Eqs. (2), (3) of the letter, corrected, at drive frequency `frequency` [Hz]."""
-    return NordmarkMap.from_oscillator(single_mode_at(scene, frequency))
+    return contact.NordmarkMap.from_oscillator(single_mode_at(scene, frequency))
 
 
-def band_of(scene: Scene, period: int) -> Band:
+def band_of(scene: Scene, period: int) -> contact.Band:
     """The band of p_m of the map with the scene's single mode, m = `period`."""
     keys = scene.single_mode
-    return band(
+    return contact.band(
         period, free_period=keys.free_period_s, decay_rate=keys.decay_rate_per_s, restitution=keys.restitution
     )
 
 
-def nonlinear_mode_at(scene: Scene, frequency: float, backbone: Backbone | None = None) -> NonlinearMode:
+def nonlinear_mode_at(
+    scene: Scene, frequency: float, backbone: Backbone | None = None
+) -> contact.NonlinearMode:
     """Eq. (1) of the letter at `frequency` [Hz] with cubic stiffness and inertia, by default the spring's."""
     keys, cubic = scene.single_mode, backbone_of(scene) if backbone is None else backbone
-    return NonlinearMode(
+    return contact.NonlinearMode(
         free_period=keys.free_period_s,
         decay_rate=keys.decay_rate_per_s,
         restitution=keys.restitution,

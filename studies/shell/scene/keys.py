@@ -17,7 +17,10 @@ from studies.shell.scene.key import CALIBRATED, LETTER, OPEN, key
 MODE_LISTS = ("frequencies_hz", "decay_rates_per_s", "tip_values", "participation")
 """The lists of [modal_data], one entry a mode."""
 
+SHAPES = ("flat_u", "folded_u", "cantilever", "straight_strip", "modal_data")
 SUPPORTS = ("clamped", "pinned", "guided", "free")
+RULES = ("strips", "constant_ratio", "constant_loss_factor", "rayleigh", "measured")
+LAWS = ("linear", "newton", "hertz", "hunt_crossley", "tsuji")
 MOST_ELEMENTS = 2000  # of a leg or a bend: a slip of the pen must not fill the memory
 
 
@@ -26,10 +29,7 @@ class SpringKeys:
     """The leaf spring: a brass strip, with or without a glued damping tape."""
 
     kind: str = key(
-        "flat_u",
-        "",
-        "shape of the spring, or modal_data for modes that were measured",
-        choices=("flat_u", "folded_u", "cantilever", "straight_strip", "modal_data"),
+        "flat_u", "", "shape of the spring, or modal_data for modes that were measured", choices=SHAPES
     )
     leg_length_m: float = key(0.13, "m", "length of one leg, or of a straight strip", LETTER, low=0.0)
     bend_radius_m: float = key(0.009, "m", "radius of the bend of a U, to its middle line", low=0.0)
@@ -94,10 +94,7 @@ class DampingKeys:
     """Decay of the modes; c in q'' + c q' + omega^2 q, so that amplitudes fall as exp(-c t/2)."""
 
     kind: str = key(
-        "strips",
-        "",
-        "how the modes decay; of no effect with spring.kind modal_data",
-        choices=("strips", "constant_ratio", "constant_loss_factor", "rayleigh", "measured"),
+        "strips", "", "how the modes decay; of no effect with spring.kind modal_data", choices=RULES
     )
     decay_rate_per_s: float = key(
         3.56, "1/s", "strips: c of mode 1 (printed with Fig. 5), others in proportion", LETTER
@@ -170,12 +167,7 @@ class StopKeys:
 class ContactKeys:
     """Ball on plate."""
 
-    law: str = key(
-        "hertz",
-        "",
-        "what happens at the plate",
-        choices=("linear", "newton", "hertz", "hunt_crossley", "tsuji"),
-    )
+    law: str = key("hertz", "", "what happens at the plate", choices=LAWS)
     stiffness_n_per_m: float = key(
         0.0, "N/m", "linear: stiffness; 0: that with Hertz's contact time", low=0.0
     )
@@ -192,10 +184,7 @@ class FurtherStopKeys(ContactKeys, StopKeys):
 
     gap_m: float = key(StopKeys.gap_m, "m", "from the point at rest to the stop", low=1e-12)
     law: str = key(
-        "contact",
-        "",
-        "what happens at this stop; contact: as [contact] says",
-        choices=("contact", "linear", "newton", "hertz", "hunt_crossley", "tsuji"),
+        "contact", "", "what happens at this stop; contact: as [contact] says", choices=("contact", *LAWS)
     )
     side: int = key(-1, "1", "1: beside the plate of [stop]; -1: on the other side", low=-1, high=1)
     at: str = key("tip", "", "point of the spring that reaches it", choices=("tip", "readout"))

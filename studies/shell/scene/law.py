@@ -15,16 +15,9 @@ def approach_speed(frequency: float, gap: float, excess: float) -> float:
 
 def hertz_of(scene: Scene) -> HertzContact:
     """Hertz's law for the ball and the plate of the scene."""
-    return scene.make(
-        HertzContact.of_bodies,
-        {
-            "radius": "tip.ball_radius_m",
-            "youngs_modulus": "tip.ball_young_modulus_pa",
-            "poissons_ratio": "tip.ball_poisson_ratio",
-            "other_modulus": "tip.plate_young_modulus_pa",
-            "other_ratio": "tip.plate_poisson_ratio",
-        },
-    )
+    ball = {"youngs_modulus": "tip.ball_young_modulus_pa", "poissons_ratio": "tip.ball_poisson_ratio"}
+    plate = {"other_modulus": "tip.plate_young_modulus_pa", "other_ratio": "tip.plate_poisson_ratio"}
+    return scene.make(HertzContact.of_bodies, {"radius": "tip.ball_radius_m"} | ball | plate)
 
 
 def ball_mass(scene: Scene) -> float:

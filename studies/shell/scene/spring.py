@@ -44,17 +44,14 @@ class MeasuredRates:
         return found
 
 
+RAYLEIGH = dict(
+    mass_coefficient="damping.rayleigh_alpha_per_s", stiffness_coefficient="damping.rayleigh_beta_s"
+)
 DAMPING = {
     "strips": (beam.MeasuredDecay, {"decay_rate": "damping.decay_rate_per_s"}),
     "constant_ratio": (beam.ConstantRatio, {"ratio": "damping.ratio"}),
     "constant_loss_factor": (beam.ConstantLossFactor, {"loss_factor": "damping.loss_factor"}),
-    "rayleigh": (
-        beam.Rayleigh,
-        {
-            "mass_coefficient": "damping.rayleigh_alpha_per_s",
-            "stiffness_coefficient": "damping.rayleigh_beta_s",
-        },
-    ),
+    "rayleigh": (beam.Rayleigh, RAYLEIGH),
     "measured": (MeasuredRates, {"rates": "damping.measured_rates_per_s"}),
 }
 """damping.kind -> the rule, and its arguments, to which the rates are proportional, with their keys."""
@@ -194,10 +191,9 @@ def require_drive_below(scene: Scene, model: ModalModel, frequency: float | None
     """SceneError if a drive frequency, or `frequency` [Hz], lies above the highest mode of the model."""
     fastest, highest = frequency or max(scene.drive.frequencies_hz), float(model.frequencies_hz.max())
     if scene.drive.kind == "harmonic" and fastest > highest:
-        words = (
-            f"above the highest of the modes kept ({highest:.6g} Hz): drive more slowly or raise modes.count"
-        )
-        raise SceneError("drive.frequencies_hz", f"has {fastest:g} Hz, {words}")
+        words = f"above the highest of the modes kept ({highest:.6g} Hz)"
+        remedy = "drive more slowly or raise modes.count"
+        raise SceneError("drive.frequencies_hz", f"has {fastest:g} Hz, {words}: {remedy}")
 
 
 def backbone_of(scene: Scene) -> beam.Backbone:
@@ -255,9 +251,8 @@ def with_first_mode(scene: Scene) -> Scene:
     if not any(scene[name] == OPEN for name in names):
         return scene
     found = first_mode(scene)
-    values = {
-        name: float(f"{value:.9g}") for name, value in zip(names, found, strict=True) if scene[name] == OPEN
-    }
+    pairs = zip(names, found, strict=True)
+    values = {name: float(f"{value:.9g}") for name, value in pairs if scene[name] == OPEN}
     if math.isinf(found[0]):
         both = f"{names[0]} (unit s) and {names[1]} (unit 1/s)"
         raise SceneError(f"mode 1 of the spring does not oscillate: give {both}")
