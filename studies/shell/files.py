@@ -122,18 +122,11 @@ def versions() -> dict[str, str]:
 
 def git_state(root: Path = ROOT) -> dict[str, object]:
     """Commit and dirty flag if `root` is the top of a git checkout, else both None."""
-
-    def git(*words: str) -> str | None:
-        try:
-            answer = subprocess.run(
-                ["git", "-C", str(root), *words], capture_output=True, text=True, timeout=10, check=False
-            )
-        except (OSError, subprocess.SubprocessError):
-            return None
-        return answer.stdout.strip() if answer.returncode == 0 else None
-
-    top, _, commit = (git("rev-parse", "--show-toplevel", "HEAD") or "").partition("\n")
-    if not top or Path(top).resolve() != root.resolve():
-        return {"commit": None, "dirty": None}
-    status = git("status", "--porcelain")
-    return {"commit": commit, "dirty": None if status is None else status != ""}
+    command = ["git", "-C", str(root), "status", "--porcelain=v2", "--branch"]
+    lines = list[str]()
+    with suppress(OSError, subprocess.SubprocessError):
+        if (root / ".git").exists():
+            done = subprocess.run(command, capture_output=True, text=True, timeout=10, check=True)
+            lines = done.stdout.splitlines()
+    commit = next((line.split()[2] for line in lines if line.startswith("# branch.oid")), None)
+    return {"commit": commit, "dirty": any(line[0] != "#" for line in lines) if lines else None}

@@ -15,7 +15,6 @@ import tempfile
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -58,8 +57,10 @@ def write_gif(path: Path, pictures: Iterable[Picture], rate: float, *, samples: 
     palette = Image.fromarray(np.concatenate(samples)).quantize(127, dither=Image.Dither.NONE)
     images = (Image.fromarray(one).quantize(palette=palette, dither=Image.Dither.NONE) for one in pictures)
     stream = io.BytesIO()
-    options: Any = {"save_all": True, "append_images": images, "loop": 0, "optimize": False}
-    next(images).save(stream, format="GIF", duration=10 * max(2, round(100.0 / rate)), **options)
+    lasts = 10 * max(2, round(100.0 / rate))
+    next(images).save(
+        stream, "GIF", duration=lasts, save_all=True, append_images=images, loop=0, optimize=False
+    )
     return write_atomically(path, stream.getvalue())
 
 
@@ -68,11 +69,11 @@ def written_as_mp4(path: Path, pictures: Iterable[Picture], rate: float) -> Iter
     that browsers play."""
     import imageio_ffmpeg
 
-    options: Any = {"fps": rate, "codec": "libx264", "quality": 8, "macro_block_size": 2}
     first = next(pictures := iter(pictures))
     with tempfile.TemporaryDirectory(dir=path.parent, prefix=f".{path.name}.") as folder:
         temporary, size = Path(folder) / path.name, first.shape[1::-1]
-        writer = imageio_ffmpeg.write_frames(str(temporary), size, ffmpeg_log_level="error", **options)
+        form = {"codec": "libx264", "quality": 8, "macro_block_size": 2, "ffmpeg_log_level": "error"}
+        writer = imageio_ffmpeg.write_frames(str(temporary), size, fps=rate, **form)
         writer.send(None)
         for one in chain([first], pictures):
             writer.send(np.ascontiguousarray(one))

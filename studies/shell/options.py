@@ -11,7 +11,8 @@ import re
 import sys
 import types
 import typing
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextvars import ContextVar
 from dataclasses import dataclass
 from difflib import get_close_matches
 from functools import partial
@@ -28,7 +29,19 @@ POSITIONAL = "positional"
 """Beside the words of an argument: it needs no name on the command line."""
 
 STYLES = ("paper", "slide")
-"""Forms of the figures (`studies.shell.plotting`)."""
+style: ContextVar[str] = ContextVar("style", default=STYLES[0])
+"""Form of the figures: for a journal, or in 16:9 with larger letters (`studies.shell.plotting`)."""
+
+
+@contextlib.contextmanager
+def style_of(name: str) -> Iterator[None]:
+    """Context in which figures are drawn in this form."""
+    token = style.set(name)
+    try:
+        yield
+    finally:
+        style.reset(token)
+
 
 MOST_CELLS = 1_000_000
 """Bound on the cells of a study, and on a count on the command line. At 1 ms a cell, a million take a quarter

@@ -184,9 +184,8 @@ def lines_above(figure: Figure, moment: Moment) -> list[Text]:
     (width, height) = figure.canvas.get_width_height()
     for row, line in enumerate(moment.lines):
         marked = row == len(moment.lines) - 1 and any(moment.touched)
-        look: Any = {"color": TOUCHED if marked else "#5A5A5A" if row else "black", "animated": True}
-        place = 12 / width, 1.0 - (8 + 24 * row) / height
-        found.append(figure.text(*place, line, fontsize=11.5, va="top", **look))
+        colour, up = TOUCHED if marked else "#5A5A5A" if row else "black", 1.0 - (8 + 24 * row) / height
+        found.append(figure.text(12 / width, up, line, color=colour, fontsize=11.5, va="top", animated=True))
     return found
 
 
@@ -226,16 +225,15 @@ def stage_of(
     canvas, place = FigureCanvasAgg(figure), (0.0, below, 1.0, 1.0 - below)
     axes = figure.add_axes(place, xlim=(-1, 1), ylim=(-1, 1))
     axes.axis("off")
-    moving: Any = {"animated": True}
-    seen = axes.add_collection(PolyCollection([], linewidths=0.4, antialiaseds=False, **moving))  # no seams
-    (edge,) = axes.plot([], [], color=TOUCHED, linewidth=2.5, **moving)
+    seen = axes.add_collection(PolyCollection([], linewidths=0.4, antialiaseds=False, animated=True))
+    (edge,) = axes.plot([], [], color=TOUCHED, linewidth=2.5, animated=True)
     artists = [seen, edge]
     if graph:
         from studies.shell.plotting import house_style
 
         with house_style():
             graph(lower := figure.add_axes((0.07, 0.3 * below, 0.87, 0.65 * below)))
-        (mark,) = lower.plot([], [], "o", markersize=7, **moving)
+        (mark,) = lower.plot([], [], "o", markersize=7, animated=True)
         artists.append(mark)
     canvas.draw()
     still_part = canvas.copy_from_bbox(figure.bbox)

@@ -20,9 +20,8 @@ reads. The same data give the same bytes: neither format carries a date or a ver
 from __future__ import annotations
 
 import io
-from collections.abc import Callable, Iterable, Iterator
-from contextlib import AbstractContextManager, contextmanager
-from contextvars import ContextVar
+from collections.abc import Callable, Iterable
+from contextlib import AbstractContextManager
 from functools import wraps
 from pathlib import Path
 from typing import Any, ParamSpec, TypeVar
@@ -37,6 +36,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from studies.shell.files import write_atomically
+from studies.shell.options import style
 
 COLUMN = 0.086
 PAGE = 0.178
@@ -112,19 +112,6 @@ def in_house_style(draw: Callable[P, R]) -> Callable[P, R]:
     return styled
 
 
-_style: ContextVar[str] = ContextVar("style", default="paper")
-
-
-@contextmanager
-def style_of(name: str) -> Iterator[None]:
-    """Context in which figures are drawn for a journal, "paper", or in 16:9 with larger letters, "slide"."""
-    token = _style.set(name)
-    try:
-        yield
-    finally:
-        _style.reset(token)
-
-
 def new_figure(
     rows: int = 1, columns: int = 1, *, width: float = COLUMN, height: float = 0.060, **subplots: Any
 ) -> tuple[Figure, Any]:
@@ -132,7 +119,7 @@ def new_figure(
 
     A slide has its own size; a large figure on paper is larger there, too.
     """
-    if _style.get() == "slide":
+    if style.get() == "slide":
         height = min(max(SLIDE, 0.7 * height, 0.4 * width), LARGEST_SLIDE)
         width = height * 16.0 / 9.0
     with matplotlib.rc_context(STYLE):
@@ -230,7 +217,7 @@ def mark_letter(axis: Axis, value: float, *, words: str = "letter", along: float
 
 def save(figure: Figure, folder: Path, name: str) -> tuple[Path, Path]:
     """Write NAME.png and NAME.pdf into a folder; returns both paths."""
-    paths, dots = (folder / f"{name}.png", folder / f"{name}.pdf"), DOTS_PER_INCH[_style.get()]
+    paths, dots = (folder / f"{name}.png", folder / f"{name}.pdf"), DOTS_PER_INCH[style.get()]
     traces = ("Software",), ("Creator", "Producer", "CreationDate")
     with matplotlib.rc_context(STYLE):
         for path, names in zip(paths, traces, strict=True):

@@ -36,7 +36,7 @@ from studies.physics.one_mode import doubts, with_restitution
 from studies.shell import programs
 from studies.shell.executors import duration
 from studies.shell.files import SCHEMA
-from studies.shell.options import STYLES, add_options, parser_of
+from studies.shell.options import add_options, parser_of, style_of
 from studies.shell.programs import (
     DONE,
     FAILED_CELLS,
@@ -159,7 +159,7 @@ class Study:
                 scene = run.adopt(*with_restitution(run.scene))
                 for sentence in doubts(scene):
                     run.warn(sentence)
-                with _drawn_as(run.style):
+                with style_of(run.style):
                     results = self.function(scene, run, **options)
         except (KeyboardInterrupt, Exception) as error:
             if _interrupted(error):
@@ -184,15 +184,6 @@ def scene_and_doubts(name: str, overrides: Sequence[str]) -> tuple[Scene, list[s
         warnings.simplefilter("always", SuspiciousValue)
         scene = read_scene(name, overrides)
     return scene, list(dict.fromkeys(str(w.message) for w in found if w.category is SuspiciousValue))
-
-
-def _drawn_as(style: str) -> contextlib.AbstractContextManager[None]:
-    """Context in which the figures have this style; matplotlib, slow to import, is left out for the usual."""
-    if style == STYLES[0]:
-        return contextlib.nullcontext()
-    from studies.shell.plotting import style_of
-
-    return style_of(style)
 
 
 def _interrupted(error: BaseException | None) -> bool:

@@ -23,6 +23,7 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Iterable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 
 import contact
@@ -183,28 +184,24 @@ def nordmark_at(scene: Scene, frequency: float) -> contact.NordmarkMap:
     return contact.NordmarkMap.from_oscillator(single_mode_at(scene, frequency))
 
 
+EQ_1 = {"free_period": "single_mode.free_period_s", "decay_rate": "single_mode.decay_rate_per_s"}
+EQ_1 |= {"restitution": "single_mode.restitution"}
+"""Arguments of Eq. (1), and their keys."""
+
+
 def band_of(scene: Scene, period: int) -> contact.Band:
     """The band of p_m of the map with the scene's single mode, m = `period`."""
-    keys = scene.single_mode
-    return contact.band(
-        period, free_period=keys.free_period_s, decay_rate=keys.decay_rate_per_s, restitution=keys.restitution
-    )
+    return scene.make(partial(contact.band, period), EQ_1)
 
 
 def nonlinear_mode_at(
     scene: Scene, frequency: float, backbone: Backbone | None = None
 ) -> contact.NonlinearMode:
     """Eq. (1) of the letter at `frequency` [Hz] with cubic stiffness and inertia, by default the spring's."""
-    keys, cubic = scene.single_mode, backbone_of(scene) if backbone is None else backbone
-    return contact.NonlinearMode(
-        free_period=keys.free_period_s,
-        decay_rate=keys.decay_rate_per_s,
-        restitution=keys.restitution,
-        gap=scene.stop.gap_m,
-        frequency=frequency,
-        stiffness=cubic.stiffness,
-        inertia=cubic.inertia,
-    )
+    cubic = backbone_of(scene) if backbone is None else backbone
+    cubes = {"stiffness": cubic.stiffness, "inertia": cubic.inertia}
+    keys = {"gap": "stop.gap_m"} | EQ_1
+    return scene.make(contact.NonlinearMode, keys, frequency=frequency, **cubes)
 
 
 def period_shifts(scene: Scene) -> Mapping[float, tuple[float, float]]:
