@@ -86,9 +86,8 @@ def plain(value: object) -> object:
         return [plain(item) for item in value]
     if dataclasses.is_dataclass(value):
         return {entry.name: plain(getattr(value, entry.name)) for entry in dataclasses.fields(value)}
-    raise TypeError(
-        f"a {type(value).__name__} has no place in a summary: give numbers, texts, lists, mappings or rows"
-    )
+    remedy = "give numbers, texts, lists, mappings or rows"
+    raise TypeError(f"a {type(value).__name__} has no place in a summary: {remedy}")
 
 
 def json_text(value: object) -> str:

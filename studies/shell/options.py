@@ -82,13 +82,8 @@ class Parser(argparse.ArgumentParser):
     """A parser that refuses in a sentence and names the nearest option to an unknown one."""
 
     def __init__(self, command: str, account: str) -> None:
-        super().__init__(
-            prog=command,
-            description=by_own_name(account),
-            usage=f"{command} [options]",
-            allow_abbrev=False,
-            formatter_class=argparse.RawDescriptionHelpFormatter,
-        )
+        form, usage = argparse.RawDescriptionHelpFormatter, f"{command} [options]"
+        super().__init__(command, usage, by_own_name(account), formatter_class=form, allow_abbrev=False)
         self._negative_number_matcher = re.compile(r"-\.?\d")  # -1e-3 is a number, too
         self.add_argument("--json", action="store_true", help="print the summary as one JSON object")
 

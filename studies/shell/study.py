@@ -26,6 +26,7 @@ import types
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import Any, TextIO, cast
 
@@ -37,15 +38,7 @@ from studies.shell import programs
 from studies.shell.executors import duration
 from studies.shell.files import SCHEMA
 from studies.shell.options import add_options, parser_of, style_of
-from studies.shell.programs import (
-    DONE,
-    FAILED_CELLS,
-    INTERRUPTED,
-    as_program,
-    perform,
-    print_answer,
-    run_time_of,
-)
+from studies.shell.programs import DONE, FAILED_CELLS, INTERRUPTED, as_program, print_answer
 from studies.shell.run import Run
 from studies.shell.scene import Scene, one_stop, read_scene
 
@@ -96,18 +89,19 @@ class Study:
         """Read the arguments, run the study, store and report; returns the exit code."""
         arguments = list(sys.argv[1:] if argv is None else argv)
         words = command or f"{programs.COMMAND} {self.name}"
-        return perform(self.name, words, arguments, lambda output: self._perform(words, arguments, output))
+        work = partial(self._perform, words, arguments)
+        return programs.perform(self.name, words, arguments, work)
 
     def _perform(self, command: str, argv: list[str], output: TextIO) -> int:
         account = sys.modules[self.function.__module__].__doc__ or ""
-        parser = parser_of(command, f"{account}\n{run_time_of([self.name])}")
+        parser = parser_of(command, f"{account}\n{programs.run_time_of([self.name])}")
         options = add_options(parser, self.function)
         given = vars(parser.read(argv, output))
         scene, doubtful = scene_and_doubts(given["scene"], given["overrides"])
         if given["dump_scene"]:
-            values = {"scene": scene.values(), "provenance": scene.provenance()}
-            whole = {"schema": SCHEMA, "study": self.name, **values}
-            print_answer(whole if given["json"] else scene.dump().rstrip(), output)
+            answer = {"schema": SCHEMA, "study": self.name, "scene": scene.values()}
+            answer |= {"provenance": scene.provenance()}
+            print_answer(answer if given["json"] else scene.dump().rstrip(), output)
             return DONE
         if not self.many_stops:
             one_stop(scene)
@@ -115,18 +109,10 @@ class Study:
         chosen = {name: tuple(v) if isinstance(v, list) else v for name, v in chosen.items()}
         for sentence in doubtful:
             print(f"warning: {sentence}", file=sys.stderr)
-        run = Run(
-            study=self.name,
-            folder=Path(given["out"]) / self.name,
-            scene=scene,
-            quick=given["quick"],
-            workers=given["workers"],
-            executor=given["executor"],
-            style=given["style"],
-            options=chosen,
-            warnings=doubtful,
-            command=shlex.join([*command.split(), *argv]),
-        )
+        how = {name: given[name] for name in ("quick", "workers", "executor", "style")}
+        folder, whole = Path(given["out"]) / self.name, shlex.join([*command.split(), *argv])
+        run = Run(study=self.name, folder=folder, scene=scene, command=whole, options=chosen, **how)
+        run.warnings = doubtful
 
         def close(code: int, status: str, results: Mapping[str, object]) -> None:
             summary = run.close(status, results)

@@ -25,6 +25,7 @@ from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from itertools import count, islice
 from pathlib import Path
+from typing import NamedTuple
 
 from jinja2 import Environment, FileSystemLoader
 
@@ -192,8 +193,7 @@ def read_results(results: Path) -> list[Stored]:
     return [read_stored(folder, numbers) for folder in there]
 
 
-@dataclass(frozen=True, kw_only=True)
-class Judged:
+class Judged(NamedTuple):
     """A point of the letter, its verdict, and the place on the page that shows it."""
 
     key: str
@@ -204,20 +204,17 @@ class Judged:
     place: str
 
 
-def judged_points(found: Sequence[Stored]) -> list[Judged]:
+def judged_points(studied: Sequence[Stored]) -> list[Judged]:
     """The letter point by point; open where no study that is there says more."""
-    by_name = {stored.study: stored for stored in found if stored.letters}
+    by_name = {stored.study: stored for stored in studied if stored.letters}
     points = []
     for key, point in letter.POINTS.items():
         stored = by_name.get(point.study)
-        about = stored.verdicts.get(key, {}) if stored else {}
-        figures = stored.figures if stored else []
+        about, figures = (stored.verdicts.get(key, {}), stored.figures) if stored else ({}, [])
         named = [figure for figure in figures if figure.name == about.get("figure")] or figures
         place = f"figure-{named[0].number}" if named else f"study-{point.study}" if stored else f"point-{key}"
-        verdict = str(about.get("verdict"))
-        said = {name: str(about.get(name) or "") for name in ("found", "note")}
-        verdict = verdict if verdict in VERDICTS else "open"
-        points.append(Judged(key=key, point=point, verdict=verdict, place=place, **said))
+        verdict, found, note = (str(about.get(name) or "") for name in ("verdict", "found", "note"))
+        points.append(Judged(key, point, verdict if verdict in VERDICTS else "open", found, note, place))
     return points
 
 

@@ -18,10 +18,11 @@ MODE_LISTS = ("frequencies_hz", "decay_rates_per_s", "tip_values", "participatio
 """The lists of [modal_data], one entry a mode."""
 
 SHAPES = ("flat_u", "folded_u", "cantilever", "straight_strip", "modal_data")
+QUANTITIES = ("displacement", "rotation")
 SUPPORTS = ("clamped", "pinned", "guided", "free")
 RULES = ("strips", "constant_ratio", "constant_loss_factor", "rayleigh", "measured")
 LAWS = ("linear", "newton", "hertz", "hunt_crossley", "tsuji")
-MOST_ELEMENTS = 2000  # of a leg or a bend: a slip of the pen must not fill the memory
+FINEST = 2000  # elements of a leg or a bend: a slip of the pen must not fill the memory
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -49,13 +50,9 @@ class SpringKeys:
     tape_density_kg_m3: float = key(1400.0, "kg/m^3", "density of the tape")
     tape_loss_factor: float = key(0.53907109242132, "1", "loss factor of the tape", CALIBRATED)
     elements_per_leg: int = key(
-        0,
-        "1",
-        "elements on a leg or straight strip; 0: 60 on each folded leg, else 120",
-        low=0,
-        high=MOST_ELEMENTS,
+        0, "1", "elements on a leg or straight strip; 0: 60 on each folded leg, else 120", low=0, high=FINEST
     )
-    elements_on_arc: int = key(0, "1", "elements on the bend of a folded_u; 0: 48", low=0, high=MOST_ELEMENTS)
+    elements_on_arc: int = key(0, "1", "elements on the bend of a folded_u; 0: 48", low=0, high=FINEST)
     start_support: str = key("clamped", "", "support at the start of a straight strip", choices=SUPPORTS)
     end_support: str = key("free", "", "support at the end of a straight strip", choices=SUPPORTS)
 
@@ -85,7 +82,7 @@ class ReadoutKeys:
         "displacement",
         "",
         "displacement along the drive (m) or rotation of the strip (rad)",
-        choices=("displacement", "rotation"),
+        choices=QUANTITIES,
     )
 
 

@@ -24,10 +24,9 @@ def ball_mass(scene: Scene) -> float:
     """Mass of ball and mount, from which a law gets its numbers [kg]; SceneError if the ball has none."""
     mass = scene.modal_data.tip_mass_kg if scene.spring.kind == "modal_data" else scene.tip.mass_kg
     if not mass > 0:
-        raise SceneError(
-            f"contact.law is {scene.contact.law}, and contact.stiffness_n_per_m is "
-            f"{scene.contact.stiffness_n_per_m:g} N/m: both need the mass of the ball; give it above zero"
-        )
+        law, stiffness = scene.contact.law, f"{scene.contact.stiffness_n_per_m:g} N/m"
+        words = "both need the mass of the ball; give it above zero"
+        raise SceneError(f"contact.law is {law}, and contact.stiffness_n_per_m is {stiffness}: {words}")
     return mass
 
 

@@ -44,9 +44,8 @@ class MeasuredRates:
         return found
 
 
-RAYLEIGH = dict(
-    mass_coefficient="damping.rayleigh_alpha_per_s", stiffness_coefficient="damping.rayleigh_beta_s"
-)
+RAYLEIGH = {"mass_coefficient": "damping.rayleigh_alpha_per_s"}
+RAYLEIGH |= {"stiffness_coefficient": "damping.rayleigh_beta_s"}
 DAMPING = {
     "strips": (beam.MeasuredDecay, {"decay_rate": "damping.decay_rate_per_s"}),
     "constant_ratio": (beam.ConstantRatio, {"ratio": "damping.ratio"}),
@@ -88,13 +87,9 @@ def spring_of(scene: Scene) -> LeafSpring:
     beyond = {"folded_u": leg + math.pi * keys.bend_radius_m, "flat_u": keys.bend_radius_m}
     seen_at = scene.readout.arc_fraction * (leg + beyond.get(keys.kind, 0.0))
     readout = scene.make(beam.Readout, {"quantity": "readout.quantity"}, at=seen_at)
-    common: dict[str, Any] = {
-        "section": bare,
-        "damped_section": taped,
-        "tip": ball,
-        "readouts": {READOUT: readout},
-        "damped_span": None if taped is None else (0.0, keys.tape_coverage * leg),
-    }
+    common: dict[str, Any] = {"section": bare, "tip": ball, "readouts": {READOUT: readout}}
+    if taped:
+        common |= {"damped_section": taped, "damped_span": (0.0, keys.tape_coverage * leg)}
     length = {"length": "spring.leg_length_m"}
 
     def bent(length: float, radius: float, bend_radius: float) -> LeafSpring:
@@ -145,13 +140,10 @@ def modes_of(scene: Scene, count: int | None = None) -> Modes:
     count = int(coupled[wanted - 1]) + 1
     shapes, omega = modes.shapes[:, :count], modes.omega[:count]
     energies = discretization.strain_energies(shapes).sum(axis=(0, 1))
-    return dataclasses.replace(
-        modes,
-        omega=np.where(omega > 0.0, np.sqrt(2.0 * energies), 0.0),
-        shapes=shapes,
-        readouts={name: row[:count] for name, row in modes.readouts.items()},
-        **{name: getattr(modes, name)[:count] for name in ("phi", "participation", "coupled")},
-    )
+    omega = np.where(omega > 0.0, np.sqrt(2.0 * energies), 0.0)
+    readouts = {name: row[:count] for name, row in modes.readouts.items()}
+    kept = {name: getattr(modes, name)[:count] for name in ("phi", "participation", "coupled")}
+    return dataclasses.replace(modes, omega=omega, shapes=shapes, readouts=readouts, **kept)
 
 
 def damping_of(scene: Scene) -> beam.Damping:
@@ -168,23 +160,15 @@ def model_of(scene: Scene) -> ModalModel:
         return model
     data = scene.modal_data
     order = np.argsort(data.frequencies_hz, kind="stable")[: scene.kept_modes]
-    lists = [np.array(getattr(data, name)) for name in MODE_LISTS]
-    if len({values.size for values in lists}) > 1 or not order.size:
+    columns = [np.array(getattr(data, name)) for name in MODE_LISTS]
+    if len({values.size for values in columns}) > 1 or not order.size:
         raise SceneError("spring.kind modal_data needs lists of equal length in modal_data, one entry a mode")
-    frequencies, rates, tip_values, participation = (values[order] for values in lists)
+    frequencies, rates, tip_values, participation = (values[order] for values in columns)
     keys = {"omega": "modal_data.frequencies_hz", "decay_rate": "modal_data.decay_rates_per_s"}
-    return scene.make(
-        ModalModel,
-        keys,
-        omega=2.0 * np.pi * frequencies,
-        decay_rate=rates,
-        phi=tip_values,
-        participation=participation,
-        static_compliance=data.static_compliance_m_per_n or None,
-        tip_mass=data.tip_mass_kg or None,
-        points={READOUT: beam.Point(row=tip_values)},
-        dimensionless=data.dimensionless,
-    )
+    lists = {"omega": 2.0 * np.pi * frequencies, "decay_rate": rates, "phi": tip_values}
+    tip = {"static_compliance": data.static_compliance_m_per_n or None, "tip_mass": data.tip_mass_kg or None}
+    own = {"points": {READOUT: beam.Point(row=tip_values)}, "dimensionless": data.dimensionless}
+    return scene.make(ModalModel, keys, **lists, participation=participation, **tip, **own)
 
 
 def require_drive_below(scene: Scene, model: ModalModel, frequency: float | None = None) -> None:

@@ -255,19 +255,13 @@ def doubts(scene: Scene) -> Iterator[str]:
         yield f"scan.born_excess is {scene.scan.born_excess:g}, far from grazing"
     soft = scene.tip.mass_kg * omega**2
     if scene.contact.law == "linear" and 0.0 < stiffness < 10.0 * soft:
-        yield (
-            f"contact.stiffness_n_per_m is {stiffness:g} N/m, below 10 times that of the ball on mode 1 "
-            f"({soft:.3g} N/m): a spring, no stop"
-        )
-    ratios = {
-        "strips": {"damping.decay_rate_per_s": 0.5 * damping.decay_rate_per_s / omega},
-        "constant_ratio": {"damping.ratio": damping.ratio},
-        "constant_loss_factor": {"damping.loss_factor": 0.5 * damping.loss_factor},
-        "rayleigh": {
-            "damping.rayleigh_alpha_per_s": 0.5 * damping.rayleigh_alpha_per_s / omega,
-            "damping.rayleigh_beta_s": 0.5 * damping.rayleigh_beta_s * omega,
-        },
-    }
-    for name, ratio in ratios.get(damping.kind, {}).items() if shaped else ():
+        words = f"below 10 times that of the ball on mode 1 ({soft:.3g} N/m): a spring, no stop"
+        yield f"contact.stiffness_n_per_m is {stiffness:g} N/m, {words}"
+    halves = {"decay_rate_per_s": 0.5 / omega, "ratio": 1.0, "loss_factor": 0.5}
+    halves |= {"rayleigh_alpha_per_s": 0.5 / omega, "rayleigh_beta_s": 0.5 * omega}
+    kinds = {"strips": "decay_rate_per_s", "constant_ratio": "ratio", "constant_loss_factor": "loss_factor"}
+    kinds |= {"rayleigh": "rayleigh_alpha_per_s rayleigh_beta_s"}
+    for name in kinds.get(damping.kind, "").split() if shaped else ():
+        ratio = halves[name] * getattr(damping, name)
         if ratio > 0.5:
-            yield f"{name} makes a damping ratio of {ratio:.3g}; above 0.5 no mode oscillates"
+            yield f"damping.{name} makes a damping ratio of {ratio:.3g}; above 0.5 no mode oscillates"
