@@ -234,11 +234,7 @@ class Run:
         wall_time = round(self.wall_time, 3)
         summary = common | {"model_choice": self.model_choice, "failures": self.failures}
         summary["failed_cells"] = len(self.failures)
-        summary |= {
-            "failed_cells": len(self.failures),
-            "verdicts": self._verdicts,
-            "findings": self._findings,
-        }
+        summary |= {"verdicts": self._verdicts, "findings": self._findings}
         if taken := sorted(summary.keys() & results.keys()):
             raise ValueError(f"{self.study} returns {', '.join(taken)}, keys that every summary has already")
         summary |= results

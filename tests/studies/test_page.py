@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
+from conftest import draw_quickly
 from page_judge import assert_balanced, assert_fit, seen
 
 from studies import letter, report
@@ -48,6 +49,14 @@ def stored(results: Path, scene: Scene, study: str = "transitions") -> Run:
     run.failed("cell 1", "<script>no</script>")
     run.close("done", {"rows": []})
     return run
+
+
+@pytest.fixture(scope="module", autouse=True)
+def coarse_figures():
+    """Figures of few dots: the page shows what is in them all the same."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(plotting, "save", draw_quickly)
+        yield
 
 
 @pytest.fixture(scope="module")

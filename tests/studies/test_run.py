@@ -180,10 +180,10 @@ def test_a_fault_of_the_program_is_no_wrong_use(tmp_path, letter_scene, fault):
 
 
 @pytest.mark.parametrize(
-    ("argv", "code"), [([], 0), (["--fail"], 3), (["--what", "value"], 2), (["--what", "interrupt"], 130)]
+    ("argv", "code"), [("", 0), ("--fail", 3), ("--what value", 2), ("--what interrupt", 130)]
 )
 def test_json_is_one_object_and_nothing_else_on_standard_output(tmp_path, capsys, argv, code):
-    assert start("--json", *argv, out=tmp_path)[0] == code
+    assert start("--json", *argv.split(), out=tmp_path)[0] == code
     answer = json.loads(capsys.readouterr().out)
     assert answer["schema"] == 3 and answer["exit_code"] == code
 
