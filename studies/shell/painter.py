@@ -207,34 +207,31 @@ def stage_of(
     from matplotlib.colors import to_rgb
     from matplotlib.figure import Figure
 
+    from studies.shell.plotting import house_style
+
     (quads, part), triangles = scenery.mesh.surface(), scenery.mesh.triangles
     corners = np.concatenate([quads, triangles[:, [0, 1, 2, 2]]])
     plates = [box(plate) for plate in scenery.plates]
-    still = [(box(corner), colour) for corner, colour in scenery.more]
-    names = {**COLOURS, STRIP: scenery.strip}
+    still, names = [(box(one), colour) for one, colour in scenery.more], {**COLOURS, STRIP: scenery.strip}
     named = [names[one] for one in [*part.tolist(), *[BALL] * len(triangles)]]
-    named += [PLATE for plate in plates for _ in plate]
+    named += [PLATE] * sum(map(len, plates))
     # seen from above, a plate under the ball is behind the strip, whose faces are as wide as the strip
     under = [plate[1, 1] < scenery.mesh.points[triangles, 1].min() for plate in scenery.plates]
     away = np.repeat([0.0, *under, 0.0], [len(corners), *map(len, plates), sum(len(one) for one, _ in still)])
     colours = np.array([to_rgb(one) for one in [*named, *(c for faces, c in still for _ in faces)]])
-    view, (width, height) = View.of(towards, scenery.extent, size[1] / size[0]), size
-    height += GRAPH_HEIGHT if graph else 0
+    view = View.of(towards, scenery.extent, size[1] / size[0])
+    height = size[1] + (GRAPH_HEIGHT if graph else 0)
     below = 1.0 - size[1] / height
-    figure = Figure(figsize=(width / DOTS, height / DOTS), dpi=DOTS)
+    figure = Figure(figsize=(size[0] / DOTS, height / DOTS), dpi=DOTS)
     canvas, place = FigureCanvasAgg(figure), (0.0, below, 1.0, 1.0 - below)
-    axes = figure.add_axes(place, xlim=(-1, 1), ylim=(-1, 1))
-    axes.axis("off")
+    axes = figure.add_axes(place, xlim=(-1, 1), ylim=(-1, 1), frame_on=False, xticks=[], yticks=[])
     seen = axes.add_collection(PolyCollection([], linewidths=0.4, antialiaseds=False, animated=True))
     (edge,) = axes.plot([], [], color=TOUCHED, linewidth=2.5, animated=True)
     artists = [seen, edge]
     if graph:
-        from studies.shell.plotting import house_style
-
         with house_style():
             graph(lower := figure.add_axes((0.07, 0.3 * below, 0.87, 0.65 * below)))
-        (mark,) = lower.plot([], [], "o", markersize=7, animated=True)
-        artists.append(mark)
+        artists += lower.plot([], [], "o", markersize=7, animated=True)
     canvas.draw()
     still_part = canvas.copy_from_bbox(figure.bbox)
 
@@ -249,7 +246,8 @@ def stage_of(
         edge.set_data(*np.concatenate(rims).T)
         texts = lines_above(figure, moment)
         if graph:
-            mark.set(data=np.reshape(moment.mark, (2, 1)), color=TOUCHED if any(moment.touched) else "black")
+            colour = TOUCHED if any(moment.touched) else "black"
+            artists[-1].set(data=np.reshape(moment.mark, (2, 1)), color=colour)
         canvas.restore_region(still_part)
         for artist in [*artists, *texts]:
             figure.draw_artist(artist)
