@@ -83,7 +83,7 @@ def start_as_program() -> None:
 program = False
 """Whether this process runs a study as a program, and not as part of another one."""
 
-if sys.argv[:1] == ["-m"]:  # as long as the interpreter looks for the module that it was told to run
+if sys.argv[:1] == ["-m"]:  # as long as the interpreter looks for the module to run
     start_as_program()
     if any(a == "-m" and b.startswith("studies.") for a, b in pairwise(sys.orig_argv)):  # it would do nothing
         print("a study runs as python -m studies NAME; --list gives the names", file=sys.stderr)

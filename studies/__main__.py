@@ -11,22 +11,22 @@ from pathlib import Path
 
 from studies import __version__, start_as_program
 from studies.shell import programs
-from studies.shell.programs import COMMAND, DONE, MAIN, chapters_in_words, module_of, names, tell
+from studies.shell.programs import COMMAND, DONE, MAIN, chapters_in_words, module_of, names, print_answer
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run what the arguments name, those of the command line by default; returns the exit code."""
+    """Run what the arguments name, by default `sys.argv`; returns the exit code."""
     given = list(sys.argv[1:] if arguments is None else arguments)
     if given == ["--version"]:
-        tell(f"grazing-spring {__version__}", sys.stdout)
+        print_answer(f"grazing-spring {__version__}", sys.stdout)
         return DONE
     if given in (["--list"], ["list"]):
-        tell(chapters_in_words(), sys.stdout)
+        print_answer(chapters_in_words(), sys.stdout)
         return DONE
     if given and not given[0].startswith("-"):
         return run_program(given[0], given[1:])
     if "--all" not in given and {"--help", "-h"}.intersection(given):
-        tell(programs.overview(), sys.stdout)
+        print_answer(programs.overview(), sys.stdout)
         return DONE
     if "--all" in given and "--dump-scene" not in given:
         from studies.shell import every_study
@@ -52,14 +52,14 @@ def run_program(name: str, arguments: Sequence[str]) -> int:
 
 def main_job(arguments: Sequence[str]) -> int:
     """The main study, and then the page of all that is stored."""
-    from studies.shell.page import told_page
+    from studies.shell.page import page_sentence
 
     main_study = getattr(importlib.import_module(module_of(MAIN)), MAIN)
     code = int(main_study.main(arguments, command=COMMAND))
     if code in (0, 3) and "--dump-scene" not in arguments:
         out = next((b for a, b in pairwise(arguments) if a == "--out"), "results")
         out = next((word.partition("=")[2] for word in arguments if word.startswith("--out=")), out)
-        print(told_page(Path(out)), file=sys.stderr)
+        print(page_sentence(Path(out)), file=sys.stderr)
     return code
 
 

@@ -71,8 +71,10 @@ def test_the_costs_are_those_of_the_table():
     costs = costs_drawn()
     for name, row in costs.items():
         pairs = [(row[f"microseconds_at_1e-{n}"], row[f"missed_at_1e-{n}"]) for n in (4, 8)]
-        told = [word for us, part in pairs for word in (time_in_words(us), f"{part:.0%}".replace("%", " %"))]
-        assert f"| {cells(name, *told)} |".replace("| 0 % |", "| none |") in TEXTS["costs"]
+        entries = [
+            word for us, part in pairs for word in (time_in_words(us), f"{part:.0%}".replace("%", " %"))
+        ]
+        assert f"| {cells(name, *entries)} |".replace("| 0 % |", "| none |") in TEXTS["costs"]
     fast, slow = (time_in_words(costs[name]["microseconds_at_1e-4"]) for name in ("exact", "SciPy DOP853"))
     assert f"takes {fast}" in PLAIN and f"SciPy (DOP853) takes {slow}" in PLAIN
 
@@ -119,7 +121,7 @@ CAUSES = {
 """Change -> its words in the table of `last_period`."""
 
 
-def told_by(name: str, found: dict) -> Iterator[str]:
+def facts_of(name: str, found: dict) -> Iterator[str]:
     """What the results of a study make of the sentences and tables of the docs."""
     rows = found["rows"]
     if name == "transitions":
@@ -207,5 +209,5 @@ def test_the_numbers_of_the_docs_are_computed(name, tmp_path):
     if not (folder / name / "summary.json").exists():
         command = [sys.executable, "-m", "studies", name, "--out", str(folder)]
         subprocess.run(command, cwd=ROOT, check=True, capture_output=True)
-    facts = list(told_by(name, json.loads((folder / name / "summary.json").read_text("utf-8"))))
+    facts = list(facts_of(name, json.loads((folder / name / "summary.json").read_text("utf-8"))))
     assert facts and [fact for fact in facts if fact not in PLAIN] == []

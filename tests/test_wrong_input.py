@@ -209,7 +209,7 @@ def driven(**numbers: float) -> object:
 def test_a_suspicious_value_is_taken_with_a_warning_that_says_why(
     make: Callable[[], object], words: str
 ) -> None:
-    """Further ones are in tests/studies/test_scene.py, as keys of a scene."""
+    """Further ones are in tests/studies/test_scene_doubts.py, as keys of a scene."""
     sentences = warned(make)
     assert any(words in sentence for sentence in sentences), sentences
     assert all(sentence.isprintable() and len(sentence) < 250 for sentence in sentences)

@@ -1,11 +1,25 @@
 """From a command line to stored results; none of it imports a chapter.
 
-`scene`                   a scene from a TOML file: spring, modes, oscillators
-`study`, `run`            a study as a program, and one run of it: results, failures, summary
-`options`, `programs`     command line, names of the programs, exit codes
-`every_study`             all studies in turn
-`files`, `executors`      files that are written whole; threads, processes, progress
-`sweep`                   many cells, stored as they come
-`plotting`, `film`        figures in the style of the package; moving pictures
-`page`                    the page and the site of all results
+The command line
+    ``programs``      the studies by name and chapter, exit codes, the streams of a program
+    ``options``       options that all studies share, and options made of the arguments of a function
+    ``study``         the decorator of a study: command line, modes that it needs, interruptions
+    ``every_study``   ``python -m studies --all``: all studies in turn
+
+Physical values
+    ``scene``         a scene from a TOML file: spring, modes, oscillators
+
+A run and its files
+    ``run``           `Run`: what a study gets besides its scene; tables, arrays, verdicts, summary
+    ``executors``     threads, processes or a cluster; progress
+    ``sweep``         many columns of cells, stored as they come, so that a sweep goes on after a stop
+    ``columns``       tables: one value a cell, and the words and the unit of each column
+    ``files``         files that are complete or absent; JSON; versions and commit
+    ``digits``        numbers in few digits
+
+Pictures and the page
+    ``plotting``      figures in the style of the package
+    ``painter``       a spring in space at one moment, with text above and a graph below
+    ``film``          moments as gif and mp4
+    ``page``          one page with the results of all studies, and a site with the documentation
 """

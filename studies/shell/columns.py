@@ -24,32 +24,13 @@ from typing import Any
 
 import numpy as np
 
-UNITS = {
-    "Hz": "hz",
-    "s": "s",
-    "m": "m",
-    "kg": "kg",
-    "m/s": "m_per_s",
-    "m/s^2": "m_per_s2",
-    "1/s": "per_s",
-    "J": "j",
-    "N": "newton",
-    "N s": "newton_s",
-    "µs": "us",
-    "ms": "ms",
-    "kg^(-1/2)": "per_sqrt_kg",
-    "kg^(1/2)": "sqrt_kg",
-    "kg^(-1/2) m^(-1)": "per_sqrt_kg_m",
-}
+UNITS = {"Hz": "hz", "s": "s", "m": "m", "kg": "kg", "m/s": "m_per_s", "m/s^2": "m_per_s2", "1/s": "per_s"}
+UNITS |= {"J": "j", "N": "newton", "N s": "newton_s", "µs": "us", "ms": "ms"}
+UNITS |= {"kg^(-1/2)": "per_sqrt_kg", "kg^(1/2)": "sqrt_kg", "kg^(-1/2) m^(-1)": "per_sqrt_kg_m"}
 """Unit -> the end of a column's name."""
 
-USUAL = {
-    "frequency_hz": "drive frequency [Hz]",
-    "excess": "excess F/F_g - 1",
-    "m": "m",
-    "period": "period m; 0 for a motion without a period",
-    "restitution": "restitution tau",
-}
+USUAL = {"frequency_hz": "drive frequency [Hz]", "excess": "excess F/F_g - 1", "m": "m"}
+USUAL |= {"period": "period m; 0 for a motion without a period", "restitution": "restitution tau"}
 """Field -> its words, where the row gives none."""
 
 WORDS = re.compile(r"(?P<heading>[^\[;]*[^\[; ]) *(\[(?P<unit>[^\]]+)\])?(; (?P<note>.+))?")
@@ -81,9 +62,8 @@ class Column:
             return None
         if value is None or isinstance(value, bool | int | float | str):
             return value
-        raise TypeError(
-            f"{self.field} of {type(row).__name__} is a {type(value).__name__}: a cell is one value"
-        )
+        kinds = type(row).__name__, type(value).__name__
+        raise TypeError(f"{self.field} of {kinds[0]} is a {kinds[1]}: a cell is one value")
 
 
 def usual_words(name: str) -> str:
@@ -148,8 +128,6 @@ def print_table(
 
 def _shown(value: object) -> str:
     """A cell of a table on the terminal."""
-    if isinstance(value, float):
-        return f"{value:.5g}"
-    return (
-        "-" if value is None else {True: "yes", False: "no"}[value] if isinstance(value, bool) else str(value)
-    )
+    if value is None or isinstance(value, bool):
+        return {None: "-", True: "yes", False: "no"}[value]
+    return f"{value:.5g}" if isinstance(value, float) else str(value)

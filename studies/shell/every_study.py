@@ -31,34 +31,22 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import TextIO
 
+from studies.shell import programs
 from studies.shell.executors import duration, progress, say
 from studies.shell.files import SCHEMA, fingerprint, make_folder, write_atomically
 from studies.shell.options import parser_of
-from studies.shell.page import told_page
-from studies.shell.programs import (
-    ALL,
-    COMMAND,
-    DONE,
-    FAILED_CELLS,
-    INTERRUPTED,
-    by_own_name,
-    module_of,
-    perform,
-    run_time_of,
-    run_times,
-    studies,
-    tell,
-)
+from studies.shell.page import page_sentence
+from studies.shell.programs import DONE, FAILED_CELLS, INTERRUPTED, print_answer, run_times, studies
 from studies.shell.scene import Scene
-from studies.shell.study import Study, read_told
+from studies.shell.study import Study, scene_and_doubts
 
 OWN_OPTIONS = ("--all", "--fresh", "--json")
 """Not passed on to the studies."""
 
 
 def arguments_of(name: str, scene: Scene, given: Namespace, passed_on: Sequence[str]) -> list[str] | None:
-    """Arguments of a study, None if it is stored; of another scene or source it forgets what it has begun."""
-    study: Study = getattr(importlib.import_module(module_of(name)), name)
+    """Arguments of a study, None if it is stored; after a change of scene or source it begins anew."""
+    study: Study = getattr(importlib.import_module(programs.module_of(name)), name)
     settings = {"quick": given.quick, "style": given.style, **study.defaults(given.quick)}
     try:
         there = json.loads((Path(given.out) / name / "manifest.json").read_text(encoding="utf-8"))
@@ -99,7 +87,7 @@ def run_in_turn(
         for name, arguments in plan.items():
             if stopped:
                 break
-            label, begun = f"{COMMAND} {name}", time.monotonic()
+            label, begun = f"{programs.COMMAND} {name}", time.monotonic()
             command, quiet = [sys.executable, "-m", "studies", name, *arguments], subprocess.DEVNULL
             with tempfile.TemporaryFile("w+", encoding="utf-8", errors="replace") as log:
                 child = subprocess.Popen(
@@ -111,7 +99,7 @@ def run_in_turn(
                 if codes[name] == DONE:
                     took[name] = time.monotonic() - begun
                 log.seek(0)
-                lines = by_own_name(log.read()).splitlines()
+                lines = programs.by_own_name(log.read()).splitlines()
                 last = next((line for line in reversed(lines) if line.strip()), "")
             say(last if last.startswith(label) else f"{label}: exit code {codes[name]}; {last.strip()}")
     return codes, took, stopped
@@ -128,7 +116,7 @@ def keep_times(took: Mapping[str, float], quick: bool, table: Path) -> None:
 def run_all(given: Namespace, arguments: Sequence[str], output: TextIO) -> int:
     """Run what is not stored and write the page; returns the exit code."""
     begun = time.monotonic()
-    scene, doubtful = read_told(given.scene, given.overrides)
+    scene, doubtful = scene_and_doubts(given.scene, given.overrides)
     passed_on = [word for word in arguments if word not in OWN_OPTIONS]
     found = {name: arguments_of(name, scene, given, passed_on) for name in studies()}
     stored = [name for name, arguments in found.items() if arguments is None]
@@ -141,13 +129,13 @@ def run_all(given: Namespace, arguments: Sequence[str], output: TextIO) -> int:
     failed = [name for name, code in codes.items() if code != DONE]
     code = INTERRUPTED if stopped else FAILED_CELLS if failed else DONE
     status = {DONE: "done", FAILED_CELLS: "finished with failed studies", INTERRUPTED: "interrupted"}[code]
-    again = shlex.join([*COMMAND.split(), *(word for word in arguments if word != "--fresh")])
+    again = shlex.join([*programs.COMMAND.split(), *(word for word in arguments if word != "--fresh")])
     rest = f"; go on with: {again}" if stopped else f": {', '.join(failed)}" if failed else ""
-    say(f"{ALL}: {status} after {duration(time.monotonic() - begun)}{rest}")
-    say(told_page(Path(given.out)))
+    say(f"{programs.ALL}: {status} after {duration(time.monotonic() - begun)}{rest}")
+    say(page_sentence(Path(given.out)))
     if given.json:
         answer = {"schema": SCHEMA, "study": "all", "status": status, "stored": stored}
-        tell({**answer, "exit_codes": codes, "exit_code": code}, output)
+        print_answer({**answer, "exit_codes": codes, "exit_code": code}, output)
     return code
 
 
@@ -155,9 +143,9 @@ def main(arguments: Sequence[str]) -> int:
     """Read the arguments of `python -m studies --all` and run the studies; returns the exit code."""
 
     def work(output: TextIO) -> int:
-        parser = parser_of(ALL, f"{__doc__}\n{run_time_of(studies())}")
+        parser = parser_of(programs.ALL, f"{__doc__}\n{programs.run_time_of(studies())}")
         parser.add_argument("--all", action="store_true", help="every study instead of the main job")
         parser.add_argument("--fresh", action="store_true", help="run again what is stored, too")
         return run_all(parser.read(arguments, output), arguments, output)
 
-    return perform("all", ALL, arguments, work)
+    return programs.perform("all", programs.ALL, arguments, work)

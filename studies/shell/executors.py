@@ -43,24 +43,22 @@ def progress(label: str, total: int, unit: str) -> Iterator[Callable[..., None]]
     in the plural; where it is s, the seconds that the work takes, the total is an estimate.
     """
     from rich.console import Console
-    from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+    from rich.progress import BarColumn, Progress, TimeRemainingColumn
 
-    words = TextColumn("{task.description}"), TextColumn("{task.fields[done]}")
-    columns = words[0], BarColumn(), words[1], TimeRemainingColumn()
-    told, lock, terminal = time.monotonic(), threading.Lock(), sys.stderr.isatty()
+    columns = "{task.description}", BarColumn(), "{task.fields[done]}", TimeRemainingColumn()
+    printed, lock, terminal = time.monotonic(), threading.Lock(), sys.stderr.isatty()
     console = Console(file=sys.stderr)
     with Progress(*columns, console=console, disable=not terminal, speed_estimate_period=math.inf) as bar:
         task = bar.add_task(label, total=total, done="")
 
         def count(steps: int = 1) -> None:
-            nonlocal told
+            nonlocal printed
             with lock:
                 bar.advance(task, steps)
                 now, known = time.monotonic(), bar.tasks[0]
-                done = _done(known.completed, total, unit, known.speed)
-                bar.update(task, done=done)
-                if not terminal and now - told >= INTERVAL:
-                    told, left = now, known.time_remaining
+                bar.update(task, done=(done := _done(known.completed, total, unit, known.speed)))
+                if not terminal and now - printed >= INTERVAL:
+                    printed, left = now, known.time_remaining
                     ahead = "" if left is None else f", {duration(left)} left"
                     say(f"{label}: {done}{ahead}")
 
@@ -128,7 +126,6 @@ def _cluster(address: str) -> Iterator[Executor]:
         raise InvalidValue(f"no scheduler answers at {address} within {PATIENCE:g} s") from error
     with client:
         if not client.nthreads():
-            raise InvalidValue(
-                f"the scheduler at {address} has no workers: start some with `dask worker {address}`"
-            )
+            remedy = f"start some with `dask worker {address}`"
+            raise InvalidValue(f"the scheduler at {address} has no workers: {remedy}")
         yield client.get_executor(pure=False)

@@ -32,14 +32,14 @@ SCHEMA = 3
 
 def make_folder(folder: Path) -> Path:
     """The folder, made if need be."""
-    with told(f"results cannot be written to the folder {folder}"):
+    with explained(f"results cannot be written to the folder {folder}"):
         folder.mkdir(parents=True, exist_ok=True)
     return folder
 
 
 def require_writable(folder: Path) -> None:
     """Refuse a folder that takes no files or cannot be made, before a computation; nothing is left there."""
-    with told(f"results cannot be written to the folder {folder}"):
+    with explained(f"results cannot be written to the folder {folder}"):
         there = next(path for path in (folder, *folder.parents) if path.exists())
         with tempfile.TemporaryFile(dir=there):
             pass
@@ -48,7 +48,7 @@ def require_writable(folder: Path) -> None:
 def write_atomically(path: Path, content: bytes) -> Path:
     """Write or replace the file at `path`."""
     temporary = path.with_name(f".{path.name}.{uuid4().hex}")
-    with told(f"{path} cannot be written"):
+    with explained(f"{path} cannot be written"):
         try:
             with temporary.open("xb") as stream:
                 stream.write(content)
@@ -62,8 +62,8 @@ def write_atomically(path: Path, content: bytes) -> Path:
 
 
 @contextmanager
-def told(what: str) -> Iterator[None]:
-    """An OSError inside says `what` and the reason of the system."""
+def explained(what: str) -> Iterator[None]:
+    """Put `what` in front of an OSError's reason."""
     try:
         yield
     except OSError as error:
@@ -86,9 +86,8 @@ def plain(value: object) -> object:
         return [plain(item) for item in value]
     if dataclasses.is_dataclass(value):
         return {entry.name: plain(getattr(value, entry.name)) for entry in dataclasses.fields(value)}
-    raise TypeError(
-        f"a {type(value).__name__} has no place in a summary: give numbers, texts, lists, mappings or rows"
-    )
+    remedy = "give numbers, texts, lists, mappings or rows"
+    raise TypeError(f"a {type(value).__name__} has no place in a summary: {remedy}")
 
 
 def json_text(value: object) -> str:
@@ -104,7 +103,7 @@ def source() -> str:
 
 
 def fingerprint(scene: object, settings: Mapping[str, object]) -> str:
-    """Equal for runs of a study whose numbers are the same: those of one source, scene and settings."""
+    """Equal for runs of a study whose numbers are the same: one source, scene and settings."""
     matters = {key: value for key, value in settings.items() if key != "fresh"}  # begins anew, ends the same
     return hashlib.sha256(json_text([source(), scene, matters]).encode()).hexdigest()
 
@@ -122,18 +121,11 @@ def versions() -> dict[str, str]:
 
 def git_state(root: Path = ROOT) -> dict[str, object]:
     """Commit and dirty flag if `root` is the top of a git checkout, else both None."""
-
-    def git(*words: str) -> str | None:
-        try:
-            answer = subprocess.run(
-                ["git", "-C", str(root), *words], capture_output=True, text=True, timeout=10, check=False
-            )
-        except (OSError, subprocess.SubprocessError):
-            return None
-        return answer.stdout.strip() if answer.returncode == 0 else None
-
-    top, _, commit = (git("rev-parse", "--show-toplevel", "HEAD") or "").partition("\n")
-    if not top or Path(top).resolve() != root.resolve():
-        return {"commit": None, "dirty": None}
-    status = git("status", "--porcelain")
-    return {"commit": commit, "dirty": None if status is None else status != ""}
+    command = ["git", "-C", str(root), "status", "--porcelain=v2", "--branch"]
+    lines = list[str]()
+    with suppress(OSError, subprocess.SubprocessError):
+        if (root / ".git").exists():
+            done = subprocess.run(command, capture_output=True, text=True, timeout=10, check=True)
+            lines = done.stdout.splitlines()
+    commit = next((line.split()[2] for line in lines if line.startswith("# branch.oid")), None)
+    return {"commit": commit, "dirty": any(line[0] != "#" for line in lines) if lines else None}

@@ -1,9 +1,9 @@
 """Films of a spring in motion, as gif and as mp4.
 
-    scenery = Scenery.of(modes, ball_radius=2.5e-3, gaps=[0.0119], swing=0.013)
+    scenery = Scenery.of(modes, ball_radius=2.5e-3, gaps=[0.0119], amplitude=0.013)
     write_film(run, "motion", "The motion.", stage_of(scenery), moments)
 
-Each moment (`studies.shell.painter`) is drawn with its lines of text above and, if wanted, a strip below.
+``studies.shell.painter`` draws each moment; here the pictures become files.
 """
 
 from __future__ import annotations
@@ -12,15 +12,14 @@ import importlib.util
 import io
 import os
 import tempfile
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from studies.shell.files import write_atomically
-from studies.shell.painter import TOUCHED, Moment, Picture, Stage
+from studies.shell.painter import Moment, Picture, Stage
 from studies.shell.programs import needs
 from studies.shell.run import Run
 
@@ -30,35 +29,17 @@ RATE = 20.0
 MOST_FRAMES = 10_000
 """Of a film: eight minutes at 20 a second, and half a gigabyte of drawn points."""
 
-Below = Callable[[int], Picture]
-"""What stands below the frame of this number."""
-
 
 def write_film(
-    run: Run, name: str, holds: str, stage: Stage, moments: Sequence[Moment], *, below: Below | None = None
+    run: Run, name: str, holds: str, stage: Stage, moments: Sequence[Moment], *, video: bool = False
 ) -> None:
-    """Film the moments with their text as NAME.gif; with what is `below` each, as NAME.mp4 too."""
-    from matplotlib.font_manager import findfont
-    from PIL import Image, ImageDraw, ImageFont
-
-    font = ImageFont.truetype(findfont("DejaVu Sans"), 16)
-
-    def framed(chosen: Iterable[int]) -> Iterator[Picture]:
-        for number in chosen:
-            moment = moments[number]
-            parts = [stage(moment), *([below(number)] if below else [])]
-            image, last = Image.fromarray(np.concatenate(parts)), len(moment.lines) - 1
-            for row, line in enumerate(moment.lines):
-                colour = TOUCHED if any(moment.touched) and row == last else "#5A5A5A" if row else "black"
-                ImageDraw.Draw(image).text((12, 8 + 24 * row), line, fill=colour, font=font)
-            yield np.asarray(image, dtype=np.uint8)
-
-    count, touched = len(moments), [number for number, moment in enumerate(moments) if any(moment.touched)]
-    samples = list(framed([0, count // 2, count - 1, *touched[:1]]))
-    pictures = framed(run.track(range(count), "frames") if below else range(count))
-    if below and can_encode():
+    """Film the moments as NAME.gif, and with `video` as NAME.mp4, too; the run keeps what it `holds`."""
+    count, touched = len(moments), [moment for moment in moments if any(moment.touched)]
+    samples = [stage(one) for one in (moments[0], moments[count // 2], moments[-1], *touched[:1])]
+    pictures: Iterator[Picture] = map(stage, run.track(moments, "frames") if video else moments)
+    if video and can_encode():
         pictures = written_as_mp4(run.path(f"{name}.mp4", holds), pictures, RATE)
-    elif below:
+    elif video:
         run.say(needs("no mp4: it", "imageio-ffmpeg"))
     write_gif(run.path(f"{name}.gif", holds), pictures, RATE, samples=samples)
 
@@ -76,8 +57,10 @@ def write_gif(path: Path, pictures: Iterable[Picture], rate: float, *, samples: 
     palette = Image.fromarray(np.concatenate(samples)).quantize(127, dither=Image.Dither.NONE)
     images = (Image.fromarray(one).quantize(palette=palette, dither=Image.Dither.NONE) for one in pictures)
     stream = io.BytesIO()
-    options: Any = {"save_all": True, "append_images": images, "loop": 0, "optimize": False}
-    next(images).save(stream, format="GIF", duration=10 * max(2, round(100.0 / rate)), **options)
+    lasts = 10 * max(2, round(100.0 / rate))
+    next(images).save(
+        stream, "GIF", duration=lasts, save_all=True, append_images=images, loop=0, optimize=False
+    )
     return write_atomically(path, stream.getvalue())
 
 
@@ -86,11 +69,11 @@ def written_as_mp4(path: Path, pictures: Iterable[Picture], rate: float) -> Iter
     that browsers play."""
     import imageio_ffmpeg
 
-    options: Any = {"fps": rate, "codec": "libx264", "quality": 8, "macro_block_size": 2}
     first = next(pictures := iter(pictures))
     with tempfile.TemporaryDirectory(dir=path.parent, prefix=f".{path.name}.") as folder:
         temporary, size = Path(folder) / path.name, first.shape[1::-1]
-        writer = imageio_ffmpeg.write_frames(str(temporary), size, ffmpeg_log_level="error", **options)
+        form = {"codec": "libx264", "quality": 8, "macro_block_size": 2, "ffmpeg_log_level": "error"}
+        writer = imageio_ffmpeg.write_frames(str(temporary), size, fps=rate, **form)
         writer.send(None)
         for one in chain([first], pictures):
             writer.send(np.ascontiguousarray(one))

@@ -11,7 +11,8 @@ import re
 import sys
 import types
 import typing
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextvars import ContextVar
 from dataclasses import dataclass
 from difflib import get_close_matches
 from functools import partial
@@ -20,7 +21,7 @@ from typing import Annotated, Literal, NoReturn, TextIO, Union, get_args, get_or
 from beam import InvalidValue
 from studies.shell.executors import require_place
 from studies.shell.files import SCHEMA
-from studies.shell.programs import DONE, by_own_name, perform, tell
+from studies.shell.programs import DONE, by_own_name, perform, print_answer
 
 Answer = Mapping[str, object]
 
@@ -28,7 +29,19 @@ POSITIONAL = "positional"
 """Beside the words of an argument: it needs no name on the command line."""
 
 STYLES = ("paper", "slide")
-"""Forms of the figures (`studies.shell.plotting`)."""
+style: ContextVar[str] = ContextVar("style", default=STYLES[0])
+"""Form of the figures: for a journal, or in 16:9 with larger letters (`studies.shell.plotting`)."""
+
+
+@contextlib.contextmanager
+def style_of(name: str) -> Iterator[None]:
+    """Context in which figures are drawn in this form."""
+    token = style.set(name)
+    try:
+        yield
+    finally:
+        style.reset(token)
+
 
 MOST_CELLS = 1_000_000
 """Bound on the cells of a study, and on a count on the command line. At 1 ms a cell, a million take a quarter
@@ -69,13 +82,8 @@ class Parser(argparse.ArgumentParser):
     """A parser that refuses in a sentence and names the nearest option to an unknown one."""
 
     def __init__(self, command: str, account: str) -> None:
-        super().__init__(
-            prog=command,
-            description=by_own_name(account),
-            usage=f"{command} [options]",
-            allow_abbrev=False,
-            formatter_class=argparse.RawDescriptionHelpFormatter,
-        )
+        form, usage = argparse.RawDescriptionHelpFormatter, f"{command} [options]"
+        super().__init__(command, usage, by_own_name(account), formatter_class=form, allow_abbrev=False)
         self._negative_number_matcher = re.compile(r"-\.?\d")  # -1e-3 is a number, too
         self.add_argument("--json", action="store_true", help="print the summary as one JSON object")
 
@@ -97,17 +105,10 @@ class Parser(argparse.ArgumentParser):
 def add_scene(parser: Parser) -> Callable[..., object]:
     """Add the options that name and change the scene; returns what adds another one to them."""
     scene = parser.add_argument_group("the scene").add_argument
-    scene(
-        "--scene", default="letter", metavar="FILE.toml", help="a file, or the name of one in studies/scenes"
-    )
-    scene(
-        "--set",
-        action="append",
-        default=[],
-        metavar="section.key=value",
-        dest="overrides",
-        help="change one key of the scene; may be repeated",
-    )
+    words = "a file, or the name of one in studies/scenes"
+    scene("--scene", default="letter", metavar="FILE.toml", help=words)
+    words = "change one key of the scene; may be repeated"
+    scene("--set", action="append", default=[], metavar="section.key=value", dest="overrides", help=words)
     return scene
 
 
@@ -139,7 +140,7 @@ def tool(parser: Parser, argv: Sequence[str] | None, work: Callable[..., tuple[s
         print(f"{parser.prog}: {sentence}", file=sys.stderr)
         if given.json:
             answer = {"schema": SCHEMA, "study": name, "status": "done", **done, "exit_code": DONE}
-            tell(answer, output)
+            print_answer(answer, output)
         return DONE
 
     return perform(name, parser.prog, arguments, answered)
@@ -163,11 +164,11 @@ def add_options(parser: Parser, function: Callable[..., object]) -> dict[str, ob
         if get_origin(kind) in (Union, types.UnionType):  # T | None
             kind = next(part for part in get_args(kind) if part is not types.NoneType)
         default = defaults[name] = entry.default
-        flag, told = f"--{name.replace('_', '-')}", words.replace("%", "%%")  # argparse formats its help
+        flag, text = f"--{name.replace('_', '-')}", words.replace("%", "%%")  # argparse formats its help
         if default not in (None, ()) and kind is not bool:
             shown = " ".join(map(str, default)) if isinstance(default, tuple) else default
-            told += f" (default: {shown})"
-        about: dict[str, object] = {"default": argparse.SUPPRESS, "help": told}
+            text += f" (default: {shown})"
+        about: dict[str, object] = {"default": argparse.SUPPRESS, "help": text}
         if kind is bool:
             about["action"] = "store_true"
         elif get_origin(kind) is Literal:
@@ -179,7 +180,7 @@ def add_options(parser: Parser, function: Callable[..., object]) -> dict[str, ob
             bounds = next((mark for mark in marks if isinstance(mark, Within)), BOUNDS.get(kind))
             reader = partial(bounds.read, kind) if bounds else kind
             about |= {"type": reader, "metavar": kind.__name__.upper()}
-            about["help"] = f"{told}; {bounds}" if bounds in marks else told
+            about["help"] = f"{text}; {bounds}" if bounds in marks else text
             if POSITIONAL in marks:
                 flag, about = name, {**about, "nargs": "?", "metavar": name.upper(), "default": default}
         group.add_argument(flag, **about)  # type: ignore[arg-type]

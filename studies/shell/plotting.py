@@ -1,8 +1,8 @@
 """House style of the figures.
 
 Drawn without a display and without global state, at the width of a journal's column or page, so that the
-letters have their printed size. Colours are those of Okabe and Ito (jfly.uni-koeln.de/color), which
-colour-blind readers can tell apart; series differ in marker and line as well, so that a grey copy still
+letters have their printed size. The colours are by Okabe and Ito (jfly.uni-koeln.de/color), which
+colour-blind readers can distinguish; series differ in marker and line as well, so that a grey copy still
 reads. The same data give the same bytes: neither format carries a date or a version.
 
     @in_house_style
@@ -20,9 +20,8 @@ reads. The same data give the same bytes: neither format carries a date or a ver
 from __future__ import annotations
 
 import io
-from collections.abc import Callable, Iterable, Iterator
-from contextlib import AbstractContextManager, contextmanager
-from contextvars import ContextVar
+from collections.abc import Callable, Iterable
+from contextlib import AbstractContextManager
 from functools import wraps
 from pathlib import Path
 from typing import Any, ParamSpec, TypeVar
@@ -37,6 +36,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from studies.shell.files import write_atomically
+from studies.shell.options import style
 
 COLUMN = 0.086
 PAGE = 0.178
@@ -63,7 +63,7 @@ UP, DOWN = (BLUE, BLUE, 1.3, 3), (VERMILION, "none", 2.6, 2)
 """Strobe points while the amplitude is raised and lowered: edge, face, size, order."""
 
 PALE = 0.35
-"""Share of the colour that is left where a motion did not settle: its points are those of a moment."""
+"""Share of the colour that is left where a motion did not settle: its points are of a moment."""
 
 EXCESS, HYSTERESIS = "excess $F/F_g - 1$", "hysteresis $1 - F_m/F_g$"
 """Names of the two quantities that most axes show."""
@@ -73,33 +73,16 @@ Array = NDArray[np.float64]
 
 GUIDE: Style = {"color": "0.6", "linewidth": 0.6, "linestyle": "--", "zorder": 0}
 LETTER: Style = {"color": "0.25", "linewidth": 0.9, "linestyle": (0, (1, 1)), "zorder": 1}
-LETTER_POINTS: Style = {
-    "color": "black",
-    "marker": "*",
-    "markersize": 6.5,
-    "markeredgecolor": "white",
-    "markeredgewidth": 0.4,
-    "linestyle": "none",
-    "zorder": 6,
-}
+LETTER_POINTS: Style = {"color": "black", "marker": "*", "markersize": 6.5, "linestyle": "none", "zorder": 6}
+LETTER_POINTS |= {"markeredgecolor": "white", "markeredgewidth": 0.4}
 """Lines that lead the eye; a value that the letter prints; its points."""
 
 STYLE: Any = {
     "font.family": "DejaVu Sans",
-    "font.size": 8.0,
-    "axes.labelsize": 8.0,
-    "axes.titlesize": 8.0,
-    "figure.labelsize": 8.0,
-    "xtick.labelsize": NOTE,
-    "ytick.labelsize": NOTE,
-    "legend.fontsize": NOTE,
-    "legend.title_fontsize": NOTE,
-    "legend.frameon": False,
-    "axes.linewidth": 0.6,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "xtick.major.width": 0.6,
-    "ytick.major.width": 0.6,
+    **dict.fromkeys(("font.size", "axes.labelsize", "axes.titlesize", "figure.labelsize"), 8.0),
+    **dict.fromkeys(("xtick.labelsize", "ytick.labelsize", "legend.fontsize", "legend.title_fontsize"), NOTE),
+    **dict.fromkeys(("axes.linewidth", "xtick.major.width", "ytick.major.width"), 0.6),
+    **dict.fromkeys(("legend.frameon", "axes.spines.top", "axes.spines.right"), False),
     "lines.linewidth": 1.0,
     "lines.markersize": 3.5,
     "axes.formatter.use_mathtext": True,
@@ -129,27 +112,14 @@ def in_house_style(draw: Callable[P, R]) -> Callable[P, R]:
     return styled
 
 
-_style: ContextVar[str] = ContextVar("style", default="paper")
-
-
-@contextmanager
-def style_of(name: str) -> Iterator[None]:
-    """Context in which figures are drawn for a journal, "paper", or in 16:9 with larger letters, "slide"."""
-    token = _style.set(name)
-    try:
-        yield
-    finally:
-        _style.reset(token)
-
-
 def new_figure(
     rows: int = 1, columns: int = 1, *, width: float = COLUMN, height: float = 0.060, **subplots: Any
 ) -> tuple[Figure, Any]:
     """A figure of `width` by `height` [m] and its axes: one, or an array as from `Figure.subplots`.
 
-    A slide has its own size; what needs much room on paper gets more there, too.
+    A slide has its own size; a large figure on paper is larger there, too.
     """
-    if _style.get() == "slide":
+    if style.get() == "slide":
         height = min(max(SLIDE, 0.7 * height, 0.4 * width), LARGEST_SLIDE)
         width = height * 16.0 / 9.0
     with matplotlib.rc_context(STYLE):
@@ -181,20 +151,13 @@ def strobe_points(
 ) -> None:
     """Strobe `points`, shape (n_amplitudes, n_strobes), of a scan: `UP` or `DOWN`; pale where not settled."""
     edge, face, size, order = look
+    dots: Style = {"linestyle": "none", "marker": "o", "markersize": size, "markeredgewidth": 0.4}
     for kept, share in ((settled, 1.0), (~settled, PALE)):
-        axes.plot(
-            np.repeat(amplitude[kept], points.shape[1]),
-            points[kept].ravel(),
-            linestyle="none",
-            marker="o",
-            markersize=size,
-            markeredgewidth=0.4,
-            markeredgecolor=tint(edge, share),
-            rasterized=True,
-            markerfacecolor=face if face == "none" else tint(face, share),
-            zorder=order * share,
-            label=words if share == 1.0 else pale if kept.any() else "",
-        )
+        fill = face if face == "none" else tint(face, share)
+        colours: Style = {"markeredgecolor": tint(edge, share), "markerfacecolor": fill}
+        name = words if share == 1.0 else pale if kept.any() else ""
+        places = np.repeat(amplitude[kept], points.shape[1]), points[kept].ravel()
+        axes.plot(*places, **dots, **colours, rasterized=True, zorder=order * share, label=name)
 
 
 def branch(
@@ -248,29 +211,17 @@ def mark_letter(axis: Axis, value: float, *, words: str = "letter", along: float
         axes.axhline(value, **LETTER)
         place, offset, across = (along, value), (0.0, 2.0), axes.get_yaxis_transform()
         sides = ("right" if end else "left", "bottom")
-    axes.annotate(
-        words,
-        place,
-        xycoords=across,
-        xytext=offset,
-        textcoords="offset points",
-        ha=sides[0],
-        va=sides[1],
-        fontsize=NOTE,
-        color=LETTER["color"],
-    )
+    look: Style = {"ha": sides[0], "va": sides[1], "fontsize": NOTE, "color": LETTER["color"]}
+    axes.annotate(words, place, xycoords=across, xytext=offset, textcoords="offset points", **look)
 
 
 def save(figure: Figure, folder: Path, name: str) -> tuple[Path, Path]:
     """Write NAME.png and NAME.pdf into a folder; returns both paths."""
-    paths, dots = (folder / f"{name}.png", folder / f"{name}.pdf"), DOTS_PER_INCH[_style.get()]
-    without_traces: tuple[dict[str, None], ...] = (
-        {"Software": None},
-        {"Creator": None, "Producer": None, "CreationDate": None},
-    )
+    paths, dots = (folder / f"{name}.png", folder / f"{name}.pdf"), DOTS_PER_INCH[style.get()]
+    traces = ("Software",), ("Creator", "Producer", "CreationDate")
     with matplotlib.rc_context(STYLE):
-        for path, metadata in zip(paths, without_traces, strict=True):
-            stream = io.BytesIO()
-            figure.savefig(stream, format=path.suffix[1:], dpi=dots, metadata=metadata)
+        for path, names in zip(paths, traces, strict=True):
+            stream, without = io.BytesIO(), dict.fromkeys(names)
+            figure.savefig(stream, format=path.suffix[1:], dpi=dots, metadata=without)
             write_atomically(path, stream.getvalue())
     return paths

@@ -1,4 +1,4 @@
-"""The studies as programs: their names, what they say of themselves, how one refuses.
+"""The studies as programs: their names, their docstrings, and how they refuse.
 
 A study is a file of this folder, or a folder with a `__main__`, that runs: nothing lists them. Nothing of
 this imports a study.
@@ -91,13 +91,12 @@ def first_line(path: Path) -> str:
 
 def chapters_in_words() -> str:
     """The chapters with one line for each study, then the tools."""
-    found = [(first_line(FOLDER / name / "__init__.py"), chapter(name)) for name in CHAPTERS]
-    found.append(("Tools", {name: programs()[name] for name in TOOLS}))
-    blocks = [
-        "\n".join([title, *(f"    {name:<18} {first_line(path)}" for name, path in each.items())])
-        for title, each in found
-    ]
-    return "\n\n".join(blocks)
+    found = {first_line(FOLDER / name / "__init__.py"): chapter(name) for name in CHAPTERS}
+    found["Tools"] = {name: programs()[name] for name in TOOLS}
+    lines = {
+        title: [f"    {n:<18} {first_line(path)}" for n, path in own.items()] for title, own in found.items()
+    }
+    return "\n\n".join("\n".join([title, *own]) for title, own in lines.items())
 
 
 def overview() -> str:
@@ -156,7 +155,7 @@ def unknown(name: str) -> str:
 
 
 def perform(study: str, command: str, arguments: Sequence[str], work: Callable[[TextIO], int]) -> int:
-    """The exit code of `work`, which prints its answer to the stream it is given; wrong use is told here."""
+    """The exit code of `work`, which prints to the stream that it gets; wrong use becomes one sentence."""
     with _clean_output() as output:
         try:
             return work(output)
@@ -169,14 +168,14 @@ def perform(study: str, command: str, arguments: Sequence[str], work: Callable[[
             print(f"{command}: {sentence}", file=sys.stderr)
             if "--json" in arguments:
                 refusal = {"status": "refused", "error": sentence, "exit_code": WRONG_USE}
-                tell({"schema": SCHEMA, "study": study, **refusal}, output)
+                print_answer({"schema": SCHEMA, "study": study, **refusal}, output)
             return WRONG_USE
 
 
 def refuse_arguments(name: str, arguments: Sequence[str]) -> None:
     """For a script without options: --help prints its account, any other argument is refused."""
     if arguments and arguments[0] in ("-h", "--help"):
-        tell(account_of(name), sys.stdout)
+        print_answer(account_of(name), sys.stdout)
         raise SystemExit(DONE)
     if arguments:
         print(f"{COMMAND} {name}: {arguments[0]} is refused; it takes no options", file=sys.stderr)
@@ -207,7 +206,7 @@ def _clean_output() -> Iterator[TextIO]:
         os.close(kept)
 
 
-def tell(answer: object, output: TextIO) -> None:
+def print_answer(answer: object, output: TextIO) -> None:
     """Print the answer, a text or what JSON takes; a pipe whose reader has seen enough (head) is no error."""
     try:
         print(answer if isinstance(answer, str) else json_text(answer), file=output, flush=True)

@@ -1,4 +1,4 @@
-"""One run of a study, seen from the study: what it is asked for besides its scene, and what it leaves behind.
+"""One run of a study, seen from the study: what it gets besides its scene, and what it stores.
 
     results/NAME/summary.json     what was found; NaN and infinity are null
                  *.npz, *.csv     arrays and tables
@@ -28,19 +28,10 @@ from numpy.typing import ArrayLike
 from beam import Refusal
 from contact import ContactError
 from studies import letter
+from studies.shell import files as store
 from studies.shell.columns import columns_of, csv_text, print_table
 from studies.shell.digits import numbers_in
 from studies.shell.executors import pool_of, progress, say
-from studies.shell.files import (
-    SCHEMA,
-    fingerprint,
-    git_state,
-    json_text,
-    make_folder,
-    require_writable,
-    versions,
-    write_atomically,
-)
 from studies.shell.scene import Scene, of_the_letter
 from studies.shell.scene.spring import size_in_words, spring_in_words
 
@@ -82,11 +73,11 @@ class Run:
     closed: bool = False
 
     def __post_init__(self) -> None:
-        require_writable(self.folder)
+        store.require_writable(self.folder)
         self._settings = {"quick": self.quick, "style": self.style, **self.options}
         self._begun, self._date = time.perf_counter(), datetime.now(UTC)
         # of the scene as it was given, before modes are chosen
-        self._fingerprint = fingerprint(self.scene.values(), self._settings)
+        self._fingerprint = store.fingerprint(self.scene.values(), self._settings)
         self._holds: dict[str, dict[str, object]] = {}
         self._verdicts: dict[str, dict[str, object]] = {}
         self._findings: list[str] = []
@@ -156,15 +147,15 @@ class Run:
         if name not in self.files:
             self.files.append(name)
         self._holds[name] = {"holds": holds, **more}
-        return make_folder(self.folder) / name
+        return store.make_folder(self.folder) / name
 
     def text(self, name: str, text: str, holds: str) -> Path:
         """A text file under its full name."""
-        return write_atomically(self.path(name, holds), text.encode())
+        return store.write_atomically(self.path(name, holds), text.encode())
 
     def json(self, name: str, value: object, holds: str) -> Path:
         """NAME.json."""
-        return self.text(f"{name}.json", json_text(value) + "\n", holds)
+        return self.text(f"{name}.json", store.json_text(value) + "\n", holds)
 
     def arrays(self, name: str, holds: str, **arrays: ArrayLike) -> Path:
         """NAME.npz with these named arrays of numbers or texts; `holds` says what each of them is."""
@@ -175,7 +166,7 @@ class Run:
                 raise TypeError(f"{key} in {name}.npz must be an array of numbers or texts, not of objects")
         np.savez_compressed(stream, **known)  # type: ignore[arg-type]
         path = self.path(f"{name}.npz", holds, arrays={key: array.shape for key, array in known.items()})
-        return write_atomically(path, stream.getvalue())
+        return store.write_atomically(path, stream.getvalue())
 
     def table(
         self,
@@ -192,13 +183,13 @@ class Run:
         print_table(columns, rows, caption, show)
         about = [{"name": c.name, "heading": c.heading, "unit": c.unit, "note": c.note} for c in columns]
         path = self.path(f"{name}.csv", caption, columns=about)
-        return write_atomically(path, csv_text(columns, rows).encode())
+        return store.write_atomically(path, csv_text(columns, rows).encode())
 
     def figure(self, name: str, figure: Figure, caption: str) -> None:
         """NAME.png and NAME.pdf; the caption is what the page writes below it."""
         from studies.shell.plotting import save  # matplotlib is slow to import
 
-        for path in save(figure, make_folder(self.folder), name):
+        for path in save(figure, store.make_folder(self.folder), name):
             self.path(path.name, caption)
 
     def failed(self, where: str, error: object, *, say: bool = True) -> None:
@@ -238,23 +229,12 @@ class Run:
         """Write what every study leaves; returns the summary."""
         self.closed = True
         settings = {**self._settings, "workers": self.workers, "executor": self.executor}
-        common = {
-            "schema": SCHEMA,
-            "study": self.study,
-            "status": status,
-            "settings": settings,
-            "provenance": self.scene.provenance(),
-            "warnings": list(self.warnings),
-        }
+        common = {"schema": store.SCHEMA, "study": self.study, "status": status, "settings": settings}
+        common |= {"provenance": self.scene.provenance(), "warnings": list(self.warnings)}
         wall_time = round(self.wall_time, 3)
-        summary = {
-            **common,
-            "model_choice": self.model_choice,
-            "failures": self.failures,
-            "failed_cells": len(self.failures),
-            "verdicts": self._verdicts,
-            "findings": self._findings,
-        }
+        summary = common | {"model_choice": self.model_choice, "failures": self.failures}
+        summary["failed_cells"] = len(self.failures)
+        summary |= {"verdicts": self._verdicts, "findings": self._findings}
         if taken := sorted(summary.keys() & results.keys()):
             raise ValueError(f"{self.study} returns {', '.join(taken)}, keys that every summary has already")
         summary |= results
@@ -262,20 +242,12 @@ class Run:
             raise ValueError(f"{self.study} returns no rows")
         for name, holds in OWN_FILES.items():
             self.path(f"{name}.json", holds)
-        manifest = {
-            **common,
-            "command": self.command,
-            "spring": spring_in_words(self.scene),
-            "size": size_in_words(self.scene),
-            "of_the_letter": self.letters,
-            "parameters": self.scene.values(),
-            "versions": versions(),
-            "git": git_state(),
-            "fingerprint": self._fingerprint,
-            "begun": self._date.isoformat(timespec="seconds"),
-            "wall_time_s": wall_time,
-            "files": self.files,
-        }
+        spring = {"spring": spring_in_words(self.scene), "size": size_in_words(self.scene)}
+        manifest = common | {"command": self.command} | spring | {"of_the_letter": self.letters}
+        manifest |= {"parameters": self.scene.values(), "versions": store.versions()}
+        manifest |= {"git": store.git_state(), "fingerprint": self._fingerprint}
+        begun = self._date.isoformat(timespec="seconds")
+        manifest |= {"begun": begun, "wall_time_s": wall_time, "files": self.files}
         for (name, holds), value in zip(OWN_FILES.items(), (summary, self._holds, manifest), strict=True):
             self.json(name, value, holds)
         return {**summary, "folder": self.folder, "wall_time_s": wall_time}

@@ -7,9 +7,9 @@
     if __name__ == "__main__":
         raise SystemExit(ends.main())
 
-Keyword-only arguments are the options; `--help` prints the docstring of the module; exit codes are those of
-`studies.shell.programs`, 3 for `run.failed` or a ContactError that escapes. Interrupted by Ctrl-C or SIGTERM
-(a KeyboardInterrupt in the study) it keeps what was stored and tells the command that goes on. A second
+Keyword-only arguments are the options; `--help` prints the docstring of the module; exit codes stand in
+`studies.shell.programs`: 3 for `run.failed` or a ContactError that escapes. Interrupted by Ctrl-C or SIGTERM
+(a KeyboardInterrupt in the study) it keeps what was stored and names the command that goes on. A second
 signal, or one that comes where nothing can be raised (in a callback of the compiler), ends it at once.
 """
 
@@ -25,7 +25,8 @@ import threading
 import types
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import Any, TextIO, cast
 
@@ -36,8 +37,8 @@ from studies.physics.one_mode import doubts, with_restitution
 from studies.shell import programs
 from studies.shell.executors import duration
 from studies.shell.files import SCHEMA
-from studies.shell.options import STYLES, add_options, parser_of
-from studies.shell.programs import DONE, FAILED_CELLS, INTERRUPTED, as_program, perform, run_time_of, tell
+from studies.shell.options import add_options, parser_of, style_of
+from studies.shell.programs import DONE, FAILED_CELLS, INTERRUPTED, as_program, print_answer
 from studies.shell.run import Run
 from studies.shell.scene import Scene, one_stop, read_scene
 
@@ -45,17 +46,13 @@ Function = Callable[..., Mapping[str, object]]
 At = Callable[[Scene, Mapping[str, Any]], tuple[Sequence[float], float]]
 
 
-def study(
-    *,
-    needs: Mapping[str, float] | None = None,
-    quick: Mapping[str, object] | None = None,
-    at: At | None = None,
-    many_stops: bool = False,
-) -> Callable[[Function], Study]:
-    """Decorator of the one function of a study.
+@dataclass(frozen=True, kw_only=True)
+class Study:
+    """A study; `main` is its command line, calling it runs its function.
 
     Parameters
     ----------
+    function : function of scene, run and options
     needs : mapping of quantity to tolerance
         What its numbers rest on: where the scene leaves modes.count open it gets the least number of modes
         that gives these quantities (``least_model``).
@@ -66,18 +63,10 @@ def study(
     many_stops : bool
         Whether it takes a scene with [[stops]]; any other study refuses one.
     """
-    return lambda function: Study(
-        function=function, needs=dict(needs or {}), quick=dict(quick or {}), at=at, many_stops=many_stops
-    )
-
-
-@dataclass(frozen=True, kw_only=True)
-class Study:
-    """A study; `main` is its command line, calling it runs its function."""
 
     function: Function
-    needs: Mapping[str, float]
-    quick: Mapping[str, object]
+    needs: Mapping[str, float] = field(default_factory=dict)
+    quick: Mapping[str, object] = field(default_factory=dict)
     at: At | None = None
     many_stops: bool = False
 
@@ -100,18 +89,19 @@ class Study:
         """Read the arguments, run the study, store and report; returns the exit code."""
         arguments = list(sys.argv[1:] if argv is None else argv)
         words = command or f"{programs.COMMAND} {self.name}"
-        return perform(self.name, words, arguments, lambda output: self._perform(words, arguments, output))
+        work = partial(self._perform, words, arguments)
+        return programs.perform(self.name, words, arguments, work)
 
     def _perform(self, command: str, argv: list[str], output: TextIO) -> int:
         account = sys.modules[self.function.__module__].__doc__ or ""
-        parser = parser_of(command, f"{account}\n{run_time_of([self.name])}")
+        parser = parser_of(command, f"{account}\n{programs.run_time_of([self.name])}")
         options = add_options(parser, self.function)
         given = vars(parser.read(argv, output))
-        scene, doubtful = read_told(given["scene"], given["overrides"])
+        scene, doubtful = scene_and_doubts(given["scene"], given["overrides"])
         if given["dump_scene"]:
-            values = {"scene": scene.values(), "provenance": scene.provenance()}
-            whole = {"schema": SCHEMA, "study": self.name, **values}
-            tell(whole if given["json"] else scene.dump().rstrip(), output)
+            answer = {"schema": SCHEMA, "study": self.name, "scene": scene.values()}
+            answer |= {"provenance": scene.provenance()}
+            print_answer(answer if given["json"] else scene.dump().rstrip(), output)
             return DONE
         if not self.many_stops:
             one_stop(scene)
@@ -119,18 +109,10 @@ class Study:
         chosen = {name: tuple(v) if isinstance(v, list) else v for name, v in chosen.items()}
         for sentence in doubtful:
             print(f"warning: {sentence}", file=sys.stderr)
-        run = Run(
-            study=self.name,
-            folder=Path(given["out"]) / self.name,
-            scene=scene,
-            quick=given["quick"],
-            workers=given["workers"],
-            executor=given["executor"],
-            style=given["style"],
-            options=chosen,
-            warnings=doubtful,
-            command=shlex.join([*command.split(), *argv]),
-        )
+        how = {name: given[name] for name in ("quick", "workers", "executor", "style")}
+        folder, whole = Path(given["out"]) / self.name, shlex.join([*command.split(), *argv])
+        run = Run(study=self.name, folder=folder, scene=scene, command=whole, options=chosen, **how)
+        run.warnings = doubtful
 
         def close(code: int, status: str, results: Mapping[str, object]) -> None:
             summary = run.close(status, results)
@@ -141,7 +123,7 @@ class Study:
                 failed = f"; {len(run.failures)} failed: {run.failures[0]}" if run.failures else ""
                 run.say(f"{took}; {len(run.files)} files in {run.folder}{failed}")
             if given["json"]:
-                tell({**summary, "exit_code": code}, output)
+                print_answer({**summary, "exit_code": code}, output)
 
         with _signals(run, lambda: close(INTERRUPTED, "interrupted", {})):
             code, status, results = self._compute(run, chosen)
@@ -153,45 +135,41 @@ class Study:
     def _compute(self, run: Run, options: Mapping[str, object]) -> tuple[int, str, Mapping[str, object]]:
         """Exit code, status and results of the run."""
         try:
-            with warnings.catch_warnings():  # a study varies the scene on purpose; what the user gave is told
+            with warnings.catch_warnings():  # a study varies the scene on purpose
                 warnings.simplefilter("ignore", SuspiciousValue)
-                asked = self.at(run.scene, options) if self.at else ()
+                conditions = self.at(run.scene, options) if self.at else ()
                 if self.needs:
                     alone = replace(run.scene, stops=())  # modes are chosen with the plate of [stop] alone
-                    chosen, why = least_modes(alone, self.needs, *asked)
+                    chosen, why = least_modes(alone, self.needs, *conditions)
                     run.choose_modes(replace(chosen, stops=run.scene.stops), why)
                 scene = run.adopt(*with_restitution(run.scene))
                 for sentence in doubts(scene):
                     run.warn(sentence)
-                with _drawn_as(run.style):
+                with style_of(run.style):
                     results = self.function(scene, run, **options)
         except (KeyboardInterrupt, Exception) as error:
             if _interrupted(error):
                 return INTERRUPTED, "interrupted", {}
             if not isinstance(error, ContactError):
                 raise
-            run.failed(type(error).__name__, error, say=False)  # the last line tells it
+            run.failed(type(error).__name__, error, say=False)  # it stands in the last line
             return FAILED_CELLS, "failed", {}
         if run.failures:
             return FAILED_CELLS, "finished with failed cells", results
         return DONE, "done", results
 
 
-def read_told(name: str, overrides: Sequence[str]) -> tuple[Scene, list[str]]:
+def study(**about: Any) -> Callable[[Function], Study]:
+    """Decorator of the one function of a study; the arguments are the fields of `Study`."""
+    return lambda function: Study(function=function, **about)
+
+
+def scene_and_doubts(name: str, overrides: Sequence[str]) -> tuple[Scene, list[str]]:
     """The scene of a command line, and sentences on what is suspicious in it."""
     with warnings.catch_warnings(record=True) as found:
         warnings.simplefilter("always", SuspiciousValue)
         scene = read_scene(name, overrides)
     return scene, list(dict.fromkeys(str(w.message) for w in found if w.category is SuspiciousValue))
-
-
-def _drawn_as(style: str) -> contextlib.AbstractContextManager[None]:
-    """Context in which the figures have this style; matplotlib, slow to import, is left out for the usual."""
-    if style == STYLES[0]:
-        return contextlib.nullcontext()
-    from studies.shell.plotting import style_of
-
-    return style_of(style)
 
 
 def _interrupted(error: BaseException | None) -> bool:
@@ -223,7 +201,9 @@ def _signals(run: Run, leave: Callable[[], None]) -> Iterator[None]:
         for number in (signal.SIGINT, signal.SIGTERM):
             if signal.getsignal(number) is not signal.SIG_IGN:  # nohup and background jobs of a shell
                 signals[number] = signal.signal(number, signalled)
-    sys.unraisablehook = lambda told: stop() if issubclass(told.exc_type, KeyboardInterrupt) else lost(told)
+    sys.unraisablehook = lambda fault: (
+        stop() if issubclass(fault.exc_type, KeyboardInterrupt) else lost(fault)
+    )
     try:
         yield
     finally:

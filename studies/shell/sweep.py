@@ -5,9 +5,9 @@
     results/STUDY/NAME/settings.json     all that the numbers depend on
                        00017.npz         column 17, written when it was made, complete or absent
 
-A column is what `compute` returns for one argument: named arrays. The columns have nothing to do with one
-another: any executor (`run.pool`) computes them in any order with the same result. What is there is not
-computed again; other settings in the same folder are refused.
+A column is what `compute` returns for one argument: named arrays. The columns are independent: any executor
+(`run.pool`) computes them in any order with the same result. What is there is not computed again; other
+settings in the same folder are refused.
 """
 
 from __future__ import annotations

@@ -145,7 +145,7 @@ def draw_at_rest(scene: Scene, solved: Modes) -> Figure:
 def write_films(run: Run, solved: Modes, radius: float, count: int, frames: int) -> None:
     """One period of each of the first modes, in space, repeated without a seam."""
     largest = largest_of(solved)
-    scenery = Scenery.of(solved, ball_radius=radius, swing=largest)
+    scenery = Scenery.of(solved, ball_radius=radius, amplitude=largest)
     stage = stage_of(scenery)
     for number in run.track(range(count), "films of modes"):
         shape = scenery.mesh.normalised(largest)[number]

@@ -17,13 +17,14 @@ from studies.shell.files import fingerprint
 from studies.shell.scene import read_scene
 
 
-def test_every_study_says_its_claim_its_command_and_its_options(capsys):
+def test_the_help_of_every_study_has_its_claim_its_command_and_its_options(capsys):
     for name in programs.studies():
         study = getattr(importlib.import_module(programs.module_of(name)), name)
         assert study.main(["--help"]) == 0
-        said = capsys.readouterr().out
-        assert "Run: " in said and all(
-            f"--{each.replace('_', '-')}" in said or each.upper() in said for each in study.defaults(False)
+        printed = capsys.readouterr().out
+        assert "Run: " in printed and all(
+            f"--{each.replace('_', '-')}" in printed or each.upper() in printed
+            for each in study.defaults(False)
         )
 
 
@@ -43,7 +44,7 @@ def run_all(tmp_path, monkeypatch, capsys):
     return run
 
 
-def test_a_failure_is_said_and_what_is_stored_is_not_run_again(run_all, tmp_path):
+def test_a_failure_is_printed_and_what_is_stored_is_not_run_again(run_all, tmp_path):
     answer, err = run_all()
     assert (answer["exit_code"], answer["exit_codes"]) == (3, {"time_trace": 0, "breakdown": 2})
     assert "python -m studies breakdown: " in err and "free_period_s" in err
@@ -87,7 +88,7 @@ def test_a_sweep_goes_on_where_it_was_interrupted_but_not_with_columns_of_anothe
     ("argv", "named"),
     [(["--full"], "--full"), (["--set", "stop.gpa_m=1"], "stop.gap_m"), (["--scene", "lettre"], "letter")],
 )
-def test_wrong_use_is_said_before_anything_runs(tmp_path, capsys, argv, named):
+def test_wrong_use_is_refused_before_anything_runs(tmp_path, capsys, argv, named):
     assert every_study.main(["--all", "--out", str(tmp_path), *argv]) == 2
     err = capsys.readouterr().err
     assert named in err and err.count("\n") == 1 and list(tmp_path.iterdir()) == []

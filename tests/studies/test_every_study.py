@@ -133,10 +133,10 @@ def test_an_impossible_number_is_refused_before_anything_is_computed(tmp_path, c
 @pytest.mark.parametrize("words", [["list"], ["--list"], ["--help"]])
 def test_help_and_list_show_every_program_in_one_short_line(capsys, words):
     assert main(words) == 0
-    told = capsys.readouterr().out
-    lines = [re.findall(rf"^    {name} +(.{{20,74}}\.)$", told, re.MULTILINE) for name in names()]
+    printed = capsys.readouterr().out
+    lines = [re.findall(rf"^    {name} +(.{{20,74}}\.)$", printed, re.MULTILINE) for name in names()]
     assert [len(found) for found in lines] == [1] * len(names())
-    assert (f"{COMMAND} transitions --help" in told) == (words == ["--help"])
+    assert (f"{COMMAND} transitions --help" in printed) == (words == ["--help"])
 
 
 def test_progress_says_what_it_counts(capsys, monkeypatch, tmp_path, letter_scene):

@@ -29,7 +29,7 @@ def modes(scene):
 
 def test_the_drawn_ball_meets_the_drawn_plate_when_the_tip_has_moved_by_the_gap(scene, modes):
     gap, radius = scene.stop.gap_m, scene.tip.ball_radius_m
-    scenery = Scenery.of(modes, ball_radius=radius, gaps=[gap, -0.5 * gap], swing=gap)
+    scenery = Scenery.of(modes, ball_radius=radius, gaps=[gap, -0.5 * gap], amplitude=gap)
     ball = scenery.mesh.points[np.unique(scenery.mesh.triangles)]
     (low, high), (_, other) = scenery.plates
     # the sphere is a polyhedron
@@ -37,13 +37,13 @@ def test_the_drawn_ball_meets_the_drawn_plate_when_the_tip_has_moved_by_the_gap(
     under = ball[:, 1].min() - scene.spring.thickness_m  # the ball lies on the strip, which meets this plate
     assert under - other[1] == pytest.approx(0.5 * gap, abs=0.02 * radius)
     assert low[0] < ball[:, 0].mean() < high[0]
-    assert not Scenery.of(modes, ball_radius=radius, swing=gap).plates
+    assert not Scenery.of(modes, ball_radius=radius, amplitude=gap).plates
     assert scenery.strip == painter.BRASS
     assert [*map(metal_of, (BRASS, STEEL, DAMPING_TAPE))] == ["brass", "steel", ""]
 
 
 def test_higher_modes_are_enlarged_and_the_tip_stays_where_it_is(scene, modes):
-    scenery = Scenery.of(modes, ball_radius=scene.tip.ball_radius_m, gaps=[0.01], swing=0.01)
+    scenery = Scenery.of(modes, ball_radius=scene.tip.ball_radius_m, gaps=[0.01], amplitude=0.01)
     coordinates = np.random.default_rng(1).normal(scale=[1e-3, 1e-4, 1e-5, 1e-5], size=(5, 4))
     tip = coordinates @ modes.phi[modes.coupled][:4]
     ball = np.unique(scenery.mesh.triangles)
@@ -69,12 +69,12 @@ def test_the_frames_of_an_orbit_show_its_contact(scene):
 
 
 def test_a_picture_shows_what_moves(scene, modes):
-    scenery = Scenery.of(modes, ball_radius=scene.tip.ball_radius_m, gaps=[0.01, -0.01], swing=0.01)
+    scenery = Scenery.of(modes, ball_radius=scene.tip.ball_radius_m, gaps=[0.01, -0.01], amplitude=0.01)
     rest = Moment(points=np.zeros_like(scenery.mesh.points), base=np.zeros(3))
-    swung = Moment(points=scenery.mesh.normalised(0.008)[0], base=np.zeros(3))
+    bent = Moment(points=scenery.mesh.normalised(0.008)[0], base=np.zeros(3))
     touched, other = (Moment(points=rest.points, base=rest.base, touched=on) for on in ([1, 0], [0, 1]))
     stage = stage_of(scenery)
-    pictures = [stage(moment) for moment in (rest, swung, touched, other, rest)]
+    pictures = [stage(moment) for moment in (rest, bent, touched, other, rest)]
     assert {picture.shape for picture in pictures} == {(painter.HEIGHT, painter.WIDTH, 3)}
     assert (pictures[0] == pictures[4]).all()
     for other in pictures[1:4]:

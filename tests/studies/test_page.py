@@ -1,4 +1,4 @@
-"""The page: what is stored is on it, what is missing or broken is told, nothing is loaded from elsewhere."""
+"""The page: what is stored is on it, what is missing or broken is named, nothing is loaded from elsewhere."""
 
 from __future__ import annotations
 
@@ -10,11 +10,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
+from conftest import draw_quickly
 from page_judge import assert_balanced, assert_fit, seen
 
 from studies import letter, report
 from studies.shell import plotting
-from studies.shell.page import judged_points, told_page, write_page
+from studies.shell.page import judged_points, page_sentence, write_page
 from studies.shell.page.documentation import module_names, write_site
 from studies.shell.page.words import prose
 from studies.shell.programs import studies
@@ -48,6 +49,14 @@ def stored(results: Path, scene: Scene, study: str = "transitions") -> Run:
     run.failed("cell 1", "<script>no</script>")
     run.close("done", {"rows": []})
     return run
+
+
+@pytest.fixture(scope="module", autouse=True)
+def coarse_figures():
+    """Figures of few dots: the page shows what is in them all the same."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(plotting, "save", draw_quickly)
+        yield
 
 
 @pytest.fixture(scope="module")
@@ -87,9 +96,8 @@ def test_the_page_holds_what_is_stored_and_loads_nothing(tmp_path, letter_scene)
     assert text.index("<img") < text.index("<h2")  # a picture stands on top
 
 
-def test_the_page_counts_the_points_and_names_one_command_for_the_rest(tmp_path, letter_scene):
-    stored(tmp_path, letter_scene)
-    path, found, missing = write_page(tmp_path)
+def test_the_page_counts_the_points_and_names_one_command_for_the_rest(results):
+    path, found, missing = write_page(results)
     text, points = path.read_text(), judged_points(found)
     assert all(str(prose(point.says)) in text for point in letter.POINTS.values())
     assert Counter(one.verdict for one in points) == {"agrees": 1, "differs": 1, "open": len(points) - 2}
@@ -97,7 +105,7 @@ def test_the_page_counts_the_points_and_names_one_command_for_the_rest(tmp_path,
     assert (places["p3"], places["p10"], places["bands"]) == ("figure-2", "figure-1", "point-bands")
     assert text.count("python -m studies --all --quick</code>") == 1
     assert missing and not any(f"python -m studies {name}" in text for name in missing)
-    assert told_page(tmp_path).endswith("python -m studies --all --quick makes the rest")
+    assert page_sentence(results).endswith("python -m studies --all --quick makes the rest")
 
 
 @pytest.mark.filterwarnings("ignore::beam.SuspiciousValue")
@@ -119,17 +127,16 @@ def test_the_page_of_every_study_names_no_command_for_the_rest(tmp_path, letter_
         run = Run(study=study, folder=tmp_path / study, scene=letter_scene, command="")
         run.close("done", {"rows": []})
     assert "studies --all" not in write_page(tmp_path)[0].read_text().partition("<h2")[0]
-    assert "makes the rest" not in told_page(tmp_path)
+    assert "makes the rest" not in page_sentence(tmp_path)
 
 
 @pytest.mark.slow
-def test_the_site_shows_what_the_public_modules_say_and_the_results(tmp_path, letter_scene):
+def test_the_site_shows_what_the_public_modules_say_and_the_results(results):
     """Warnings are errors: of pdoc, of a type that cannot be read or a module that cannot be imported."""
-    stored(tmp_path, letter_scene)
     doors = ["beam", "beam.space", "contact", "contact.orbits", "contact.integrators"]
     assert set(doors) <= set(module_names()) and "studies.tour" not in module_names()
-    index = write_site(tmp_path, write_page(tmp_path)[0], doors)
-    assert index == tmp_path / "site" / "index.html"
+    index = write_site(results, write_page(results)[0], doors)
+    assert index == results / "site" / "index.html"
     text, page = index.read_text(), (index.parent / "contact.html").read_text()
     for place in (*(f"{door.replace('.', '/')}.html" for door in doors), "results.html"):
         assert f'href="{place}"' in text and (index.parent / place).exists()
@@ -145,11 +152,10 @@ def test_a_damaged_file_is_no_reason_to_fail(tmp_path, results, damage):
         assert_balanced(write_page(tmp_path)[0].read_text())
 
 
-def test_the_command_writes_the_page_or_says_why_not(tmp_path, letter_scene, capsys):
+def test_the_command_writes_the_page_or_says_why_not(tmp_path, results, capsys):
     assert report.main(["--out", str(tmp_path), "--json"]) == 2
     assert json.loads(capsys.readouterr().out)["status"] == "refused"
-    stored(tmp_path, letter_scene)
-    assert report.main(["--out", str(tmp_path), "--json"]) == 0
+    assert report.main(["--out", str(results), "--json"]) == 0
     answer = json.loads(capsys.readouterr().out)
     assert answer["studies"] == ["transitions"] and Path(answer["page"]).exists()
     assert report.main(["--nonsense"]) == 2

@@ -104,7 +104,7 @@ def test_a_failure_of_the_program_ends_the_sweep_and_keeps_what_is_there(tmp_pat
 def test_kills_are_survived(tmp_path):
     """A child process sweeps and is killed at random, four times; then it is left to finish.
 
-    Two threads need 0.96 s for all columns, the four lives end within 0.32 s: none can finish on any machine.
+    Two threads need 0.96 s for all columns, the four runs end within 0.32 s: none can finish on any machine.
     """
     rng = random.Random(5)
     for kill in range(5):

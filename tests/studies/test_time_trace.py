@@ -1,7 +1,6 @@
 """The settled orbit against time: its period, its collision, its spectrum, and what the study writes."""
 
 from dataclasses import fields
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,16 +9,14 @@ from PIL import Image
 from contact import Collision, StroboscopicMap, first_collision
 from contact.collision import before_collision
 from contact.orbits import born
-from studies.experiment.time_trace.film import strip
 from studies.experiment.time_trace.model import WORDS, SimulatedMap, close_up
-from studies.shell.painter import WIDTH
-from studies.shell.plotting import style_of
+from studies.shell.painter import GRAPH_HEIGHT, HEIGHT, WIDTH
 from studies.shell.scene import beam_at, single_mode_of
 
 
 def test_the_orbit_of_figure_4_the_ringing_of_its_impact_and_its_film(run_study):
     at_the_ball = "--set", "readout.arc_fraction=1.0"
-    ran = run_study("time_trace", "--quick", *at_the_ball, "--film", "--frames", "8")
+    ran = run_study("time_trace", "--quick", *at_the_ball, "--film", "--frames", "8", "--style", "slide")
     summary = ran.summary
     assert (ran.code, summary["period"], summary["impacts"]) == (0, 4, 1)
     times = summary["impact_times_s"]
@@ -40,16 +37,9 @@ def test_the_orbit_of_figure_4_the_ringing_of_its_impact_and_its_film(run_study)
     assert {summary["verdicts"][point]["verdict"] for point in ("time_trace", "many_modes")} == {"agrees"}
     assert len(list((ran.folder / "motion_frames").glob("*.vtu"))) == 8
     with Image.open(ran.folder / "motion.gif") as found:
-        assert found.n_frames == 8
+        assert found.n_frames == 8 and found.size == (WIDTH, HEIGHT + GRAPH_HEIGHT)
     assert {"motion.gif", "motion.pvd"} <= set(ran.manifest["files"])
     assert WORDS.keys() == {field.name for field in fields(Collision)}
-
-
-def test_the_strip_of_a_film_has_one_size_in_every_style():
-    orbit, trace = SimpleNamespace(duration=0.1, time=[0.05], tip=[0.01], touched=[[True]]), np.ones(2)
-    for name in ("paper", "slide"):
-        with style_of(name):
-            assert strip(orbit, SimpleNamespace(time=trace, tip=trace), [0.01])(0).shape[1] == WIDTH
 
 
 def test_below_grazing_there_is_no_impact_and_one_line(run_study, letter_scene):

@@ -22,9 +22,9 @@ The departure leaves the tip where it is: with any M the ball meets the plate wh
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,14 +34,17 @@ from contact import ImpactKind, ImpactOscillator, State, simulate
 from contact.orbits import Settled
 from studies.experiment.time_trace.model import Trace, touching
 from studies.shell.digits import minus
-from studies.shell.film import RATE, Below, write_film
-from studies.shell.painter import DRIVE, TOUCHED, WIDTH, Moment, Picture, Scenery, stage_of
+from studies.shell.film import RATE, write_film
+from studies.shell.painter import DRIVE, Moment, Scenery, stage_of
 from studies.shell.scene import Scene, modes_of
 from studies.shell.study import Run
 
-CUE = 2.0  # times slower than the flight, from where on the film says so in words
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
-DOTS = 110  # points an inch of the strip below the spring
+Array = NDArray[np.float64]
+
+CUE = 2.0  # times slower than the flight, from where on the film says so in words
 
 
 def film(
@@ -58,13 +61,16 @@ def film(
     modes, radius = modes_of(scene), scene.tip.ball_radius_m
     gaps = [stop.side * stop.gap for stop in oscillator.stops if stop.at == "tip"]
     orbit = film_orbit(oscillator, settled.end, settled.period, frames=frames, rate=RATE)
-    scenery = Scenery.of(modes, ball_radius=radius, gaps=gaps, swing=float(np.abs(orbit.tip).max()))
+    scenery = Scenery.of(modes, ball_radius=radius, gaps=gaps, amplitude=float(np.abs(orbit.tip).max()))
     drawn, magnification = drawn_shapes(scenery.mesh, modes, orbit.coordinates)
     true, _ = drawn_shapes(scenery.mesh, modes, orbit.coordinates, 1.0)
     enlarged = [f"higher modes are drawn {magnification:g} times larger"] if magnification > 1.0 else []
+    marks = zip(1e3 * orbit.time, 1e3 * orbit.tip, strict=True)
     moments = [
-        Moment(points=points, base=base * DRIVE, touched=plates, lines=[words, *enlarged, *lines])
-        for points, base, plates, lines in zip(drawn, orbit.base, orbit.touched, lines_of(orbit), strict=True)
+        Moment(points=points, base=base * DRIVE, touched=plates, lines=[words, *enlarged, *lines], mark=mark)
+        for points, base, plates, lines, mark in zip(
+            drawn, orbit.base, orbit.touched, lines_of(orbit), marks, strict=True
+        )
     ]
 
     def grids() -> Iterator[tuple[float, Any]]:
@@ -79,7 +85,8 @@ def film(
     slow = f"{orbit.slowed.min():.0f} to {orbit.slowed.max():.0f} times slower than life"
     run.say(f"{words}: {len(orbit.contacts)} contacts, {slow}")
     holds = "One period of the orbit, slow at the collision; below, the ball against time."
-    write_film(run, "motion", holds, stage_of(scenery), moments, below=strip(orbit, trace, gaps))
+    stage = stage_of(scenery, graph=graph_of(trace, gaps, orbit.duration))
+    write_film(run, "motion", holds, stage, moments, video=True)
     return {"contacts_s": orbit.contacts, "magnification": magnification}
 
 
@@ -94,37 +101,24 @@ def lines_of(orbit: FilmedOrbit) -> Iterator[tuple[str, str]]:
         )
 
 
-def strip(orbit: FilmedOrbit, trace: Trace, gaps: Sequence[float]) -> Below:
-    """The tip against time, as it stands below a frame, with a mark at the time of the frame."""
-    from PIL import Image, ImageDraw
+def graph_of(trace: Trace, gaps: Sequence[float], duration: float) -> Callable[[Axes], None]:
+    """The tip against time, with the plates at `gaps` [m], as it stands below a frame."""
 
-    from studies.shell.plotting import BLUE, GUIDE, INCH, NOTE, house_style, label, new_figure, style_of
+    def graph(axes: Axes) -> None:
+        from studies.shell.plotting import BLUE, GUIDE, NOTE, label  # matplotlib is slow to import
 
-    with house_style(), style_of("paper"):
-        figure, axes = new_figure(width=WIDTH / DOTS * INCH, height=150 / DOTS * INCH)
         axes.plot(1e3 * trace.time, 1e3 * trace.tip, color=BLUE)
         for gap in gaps:
             axes.axhline(1e3 * gap, **GUIDE)
-            beside = {"transform": axes.get_yaxis_transform(), "fontsize": NOTE, "va": "center"}
-            axes.text(1.0, 1e3 * gap, "plate", **beside)
-        axes.set_xlim(0.0, 1e3 * orbit.duration)
+            axes.text(
+                1.0, 1e3 * gap, "plate", transform=axes.get_yaxis_transform(), fontsize=NOTE, va="center"
+            )
+        axes.set_xlim(0.0, 1e3 * duration)
         label(axes.xaxis, "time", "ms")
         label(axes.yaxis, "ball", "mm")
-        figure.set(dpi=DOTS)
-        figure.canvas.draw()
-    drawn = np.asarray(figure.canvas.buffer_rgba(), dtype=np.uint8)[..., :3]  # type: ignore[attr-defined]
 
-    def marked(i: int) -> Picture:
-        image = Image.fromarray(drawn)
-        across, up = axes.transData.transform((1e3 * orbit.time[i], 1e3 * orbit.tip[i]))
-        colour = TOUCHED if any(orbit.touched[i]) else "black"
-        ImageDraw.Draw(image).circle((across, image.height - up), 5, fill=colour)
-        return np.asarray(image, dtype=np.uint8)
+    return graph
 
-    return marked
-
-
-Array = NDArray[np.float64]
 
 NEARER, IN_CONTACT = 8.0, 6.0
 FLIGHT_STEPS = 120.0  # steps of the flight in a whole film, were there no contacts
@@ -216,6 +210,6 @@ def drawn_shapes(
     carried[:, ball] = ((coordinates @ phi)[:, None] * drive)[:, None]
     if magnification is None:
         largest = float(np.linalg.norm(departures[:, strip], axis=2).max())
-        bound = LARGEST * float(np.ptp(mesh.points[strip], axis=0).max())
-        magnification = min(MOST, max(1.0, math.floor(bound / largest))) if largest > 0.0 else 1.0
+        most = LARGEST * float(np.ptp(mesh.points[strip], axis=0).max())
+        magnification = min(MOST, max(1.0, math.floor(most / largest))) if largest > 0.0 else 1.0
     return carried + magnification * departures, magnification

@@ -7,6 +7,9 @@ are docstrings, sentences and verdicts come from its summary, figures, tables an
 its columns.json. A page made from other results says other things, and what is the letter's stands on the
 page of the letter's spring only.
 
+``words`` writes numbers, cells and prose as print; ``page.html.j2`` is the template; ``documentation`` makes
+the site, which adds the docstrings of the packages.
+
 The page is one file that needs no network: pictures and style are inside, and its content policy forbids
 every request. What is missing or broken in the results becomes a sentence on the page.
 """
@@ -22,6 +25,7 @@ from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from itertools import count, islice
 from pathlib import Path
+from typing import NamedTuple
 
 from jinja2 import Environment, FileSystemLoader
 
@@ -174,17 +178,10 @@ def _table(path: Path, about: Mapping[str, object]) -> Shown:
     known = known if len(known) == len(names) else [{"heading": words.cell(name)} for name in names]
     full = [n for n in range(len(names)) if any(row[n] for row in rows if len(row) == len(names))]
     units = [f" ({one['unit']})" if one.get("unit") else "" for one in known]
-    headings = [
-        (f"{one.get('heading')}{unit}", str(one.get("note") or ""))
-        for one, unit in zip(known, units, strict=True)
-    ]
-    return Shown(
-        name=path.stem,
-        caption=str(about.get("holds") or path.name),
-        headings=[headings[n] for n in full],
-        rows=[[row[n] for n in full] for row in rows if len(row) == len(names)],
-        long=len(rows) > MOST_ROWS,
-    )
+    headings = [(f"{known[n].get('heading')}{units[n]}", str(known[n].get("note") or "")) for n in full]
+    shown = [[row[n] for n in full] for row in rows if len(row) == len(names)]
+    caption, long = str(about.get("holds") or path.name), len(rows) > MOST_ROWS
+    return Shown(name=path.stem, caption=caption, headings=headings, rows=shown, long=long)
 
 
 def read_results(results: Path) -> list[Stored]:
@@ -196,8 +193,7 @@ def read_results(results: Path) -> list[Stored]:
     return [read_stored(folder, numbers) for folder in there]
 
 
-@dataclass(frozen=True, kw_only=True)
-class Judged:
+class Judged(NamedTuple):
     """A point of the letter, its verdict, and the place on the page that shows it."""
 
     key: str
@@ -208,20 +204,17 @@ class Judged:
     place: str
 
 
-def judged_points(found: Sequence[Stored]) -> list[Judged]:
+def judged_points(studied: Sequence[Stored]) -> list[Judged]:
     """The letter point by point; open where no study that is there says more."""
-    by_name = {stored.study: stored for stored in found if stored.letters}
+    by_name = {stored.study: stored for stored in studied if stored.letters}
     points = []
     for key, point in letter.POINTS.items():
         stored = by_name.get(point.study)
-        about = stored.verdicts.get(key, {}) if stored else {}
-        figures = stored.figures if stored else []
+        about, figures = (stored.verdicts.get(key, {}), stored.figures) if stored else ({}, [])
         named = [figure for figure in figures if figure.name == about.get("figure")] or figures
         place = f"figure-{named[0].number}" if named else f"study-{point.study}" if stored else f"point-{key}"
-        verdict = str(about.get("verdict"))
-        said = {name: str(about.get(name) or "") for name in ("found", "note")}
-        verdict = verdict if verdict in VERDICTS else "open"
-        points.append(Judged(key=key, point=point, verdict=verdict, place=place, **said))
+        verdict, found, note = (str(about.get(name) or "") for name in ("verdict", "found", "note"))
+        points.append(Judged(key, point, verdict if verdict in VERDICTS else "open", found, note, place))
     return points
 
 
@@ -247,17 +240,12 @@ def write_page(results: Path) -> tuple[Path, list[Stored], list[str]]:
     )
     first = found[0]
     environment.filters |= {"prose": words.prose, "cell": words.cell}
-    chapters = [
-        (
-            first_line(FOLDER / name / "__init__.py").rstrip("."),
-            [one for one in found if one.study in chapter(name)],
-        )
-        for name in CHAPTERS
-    ]
+    titles = [first_line(FOLDER / name / "__init__.py").rstrip(".") for name in CHAPTERS]
+    parts = [[one for one in found if one.study in chapter(name)] for name in CHAPTERS]
     text = environment.get_template("page.html.j2").render(
         first=first,
         letters=letters,
-        chapters=[(title, own) for title, own in chapters if own],
+        chapters=[(title, own) for title, own in zip(titles, parts, strict=True) if own],
         picture=next((figure for one in found for figure in one.figures), None),
         rig=next((figure for one in found for figure in one.figures if figure.name == "rig"), None),
         short=[(one.study, one.findings[0]) for one in found if one.findings][:MOST_IN_SHORT],
@@ -276,7 +264,7 @@ def write_page(results: Path) -> tuple[Path, list[Stored], list[str]]:
     return write_atomically(folder / "index.html", text.encode()), found, missing
 
 
-def told_page(results: Path) -> str:
+def page_sentence(results: Path) -> str:
     """Write the page and say so; a page that cannot be written is no reason for a study to fail."""
     try:
         path, found, missing = write_page(results)
@@ -289,8 +277,5 @@ def in_words(path: Path, found: Sequence[Stored], missing: Sequence[str]) -> str
     """The page in one sentence, with the command that completes it."""
     count = f"{len(found)} of {len(found) + len(missing)}" if missing else f"all {len(found)}"
     page = f"page of {count} studies, {path.stat().st_size / 1e6:.1f} MB: {path}"
-    return (
-        f"{page}; {words.command_for_the_rest(str(found[0].manifest.get('command') or ''))} makes the rest"
-        if missing
-        else page
-    )
+    command = words.command_for_the_rest(str(found[0].manifest.get("command") or ""))
+    return f"{page}; {command} makes the rest" if missing else page

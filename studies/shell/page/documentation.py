@@ -16,7 +16,7 @@ from jinja2 import ChoiceLoader, DictLoader
 
 from beam import InvalidValue
 from studies import ROOT
-from studies.shell.files import told
+from studies.shell.files import explained
 from studies.shell.programs import needs
 
 INDEX = """{% set root_module_name = false %}{% extends "default/index.html.jinja2" %}
@@ -47,7 +47,7 @@ def write_site(results: Path, page: Path, modules: Sequence[str]) -> Path:
     usual = [render.env.loader] if render.env.loader else []
     render.env.loader = ChoiceLoader([DictLoader({"index.html.jinja2": INDEX}), *usual])
     render.env.globals["readme"] = readme.read_text(encoding="utf-8") if readme.exists() else ""
-    with warnings.catch_warnings(), told(f"the site cannot be written to {folder}"):
+    with warnings.catch_warnings(), explained(f"the site cannot be written to {folder}"):
         # types of inherited fields and of named tuples, when of another module: shown as they are written
         warnings.filterwarnings("ignore", r"Error parsing type annotation .*\.__init__\. Import of")
         known = {name: doc.Module.from_name(name) for name in modules}

@@ -18,20 +18,9 @@ SIGNED = re.compile(rf"(?<![\w.)\]−-])-(?={NUMBER})")
 LONG = re.compile(r"(?<![\w.])(?:\d+\.\d{5,}(?:e[-+]?\d+)?|\d+(?:\.\d+)?e[-+]?\d+)(?!\w|\.\d)")
 """A number with many digits, or with an exponent."""
 
-SIGNS = {
-    "kg^(-1/2) m^(-1)": "1/(√kg m)",
-    "kg^(-1/2)": "1/√kg",
-    "kg^(1/2)": "√kg",
-    "^2": "²",
-    "^3": "³",
-    "+-": "±",
-    "<->": "↔",
-    "->": "→",
-    " x ": " × ",
-    " - ": " − ",
-    ">=": "≥",
-    "<=": "≤",
-}
+SIGNS = {"kg^(-1/2) m^(-1)": "1/(√kg m)", "kg^(-1/2)": "1/√kg", "kg^(1/2)": "√kg", "^2": "²", "^3": "³"}
+SIGNS |= {"+-": "±", "<->": "↔", "->": "→", " x ": " × ", " - ": " − ", ">=": "≥", "<=": "≤"}
+"""What is typed, and its printed form; the longer one first."""
 
 CELLS = {"True": "yes", "False": "no", "": "–", "inf": "∞", "single_mode": "Eq. (1)"}
 """What a page writes for these cells."""

@@ -2,13 +2,20 @@
 
     scene = read_scene("letter", ["drive.frequencies_hz=[22.2]"])    # a scene of ours by name, or any file
     spring_of(scene) -> modes_of(scene) -> model_of(scene)           # beam: drawing, modes, what impacts see
-    beam_at(scene, f)                                                # the spring on its stop, driven at f
-    [Hz]
+    beam_at(scene, f)                                                # the spring on its stops, at f [Hz]
     single_mode_at(scene, f), nordmark_at(scene, f)                  # Eq. (1) and Eqs. (2), (3) of the letter
 
-Whatever is wrong is a `SceneError` of one sentence that names the key: the constructors of `beam` and
-`contact` refuse, and their names are put into those of the scene here. What is legal and can hardly be meant
-brings a `SuspiciousValue` warning. Reading a scene solves no eigenvalue problem.
+The files
+    ``key``      one key: default, unit, limits, and the check of a value
+    ``keys``     every key of a scene, by section
+    ``values``   `Scene`: the values, from TOML and overrides; its dump with comments
+    ``law``      the contact law of a scene
+    ``spring``   spring, modes and modal model of a scene
+Here stand reading, checks that need several sections, oscillators, and drive frequencies of other springs.
+
+Whatever is wrong is a `SceneError` of one sentence that names the key. The constructors of `beam` and
+`contact` refuse, and the keys of the scene replace the names of their arguments. What is legal and can hardly
+be meant brings a `SuspiciousValue` warning. Reading a scene solves no eigenvalue problem.
 """
 
 from __future__ import annotations
@@ -16,21 +23,12 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Iterable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 
+import contact
 from beam import Backbone, ModalModel, Refusal, suspect
-from contact import (
-    Band,
-    ContactError,
-    ContactLaw,
-    HarmonicDrive,
-    ImpactOscillator,
-    NewtonRestitution,
-    NonlinearMode,
-    NordmarkMap,
-    Stop,
-    band,
-)
+from contact import ContactError, ContactLaw, HarmonicDrive, ImpactOscillator, NewtonRestitution, Stop
 from studies import ROOT, letter
 from studies.shell.programs import COMMAND
 from studies.shell.scene.key import OPEN as OPEN
@@ -181,31 +179,29 @@ def restitution_of(scene: Scene) -> NewtonRestitution:
     return scene.make(NewtonRestitution, {"local_restitution": "single_mode.restitution"})
 
 
-def nordmark_at(scene: Scene, frequency: float) -> NordmarkMap:
+def nordmark_at(scene: Scene, frequency: float) -> contact.NordmarkMap:
     """Eqs. (2), (3) of the letter, corrected, at drive frequency `frequency` [Hz]."""
-    return NordmarkMap.from_oscillator(single_mode_at(scene, frequency))
+    return contact.NordmarkMap.from_oscillator(single_mode_at(scene, frequency))
 
 
-def band_of(scene: Scene, period: int) -> Band:
+EQ_1 = {"free_period": "single_mode.free_period_s", "decay_rate": "single_mode.decay_rate_per_s"}
+EQ_1 |= {"restitution": "single_mode.restitution"}
+"""Arguments of Eq. (1), and their keys."""
+
+
+def band_of(scene: Scene, period: int) -> contact.Band:
     """The band of p_m of the map with the scene's single mode, m = `period`."""
-    keys = scene.single_mode
-    return band(
-        period, free_period=keys.free_period_s, decay_rate=keys.decay_rate_per_s, restitution=keys.restitution
-    )
+    return scene.make(partial(contact.band, period), EQ_1)
 
 
-def nonlinear_mode_at(scene: Scene, frequency: float, backbone: Backbone | None = None) -> NonlinearMode:
+def nonlinear_mode_at(
+    scene: Scene, frequency: float, backbone: Backbone | None = None
+) -> contact.NonlinearMode:
     """Eq. (1) of the letter at `frequency` [Hz] with cubic stiffness and inertia, by default the spring's."""
-    keys, cubic = scene.single_mode, backbone_of(scene) if backbone is None else backbone
-    return NonlinearMode(
-        free_period=keys.free_period_s,
-        decay_rate=keys.decay_rate_per_s,
-        restitution=keys.restitution,
-        gap=scene.stop.gap_m,
-        frequency=frequency,
-        stiffness=cubic.stiffness,
-        inertia=cubic.inertia,
-    )
+    cubic = backbone_of(scene) if backbone is None else backbone
+    cubes = {"stiffness": cubic.stiffness, "inertia": cubic.inertia}
+    keys = {"gap": "stop.gap_m"} | EQ_1
+    return scene.make(contact.NonlinearMode, keys, frequency=frequency, **cubes)
 
 
 def period_shifts(scene: Scene) -> Mapping[float, tuple[float, float]]:
@@ -232,15 +228,15 @@ def beyond_linear(scene: Scene) -> str | None:
     if scene.drive.kind != "harmonic" or scene.single_mode.restitution == OPEN:
         return None
     shifts = period_shifts(scene)
-    moved = {f"{f:g}": shift for f, (shift, room) in shifts.items() if abs(shift) > room}
+    moved = {f"{f:g}": shift for f, (shift, margin) in shifts.items() if abs(shift) > margin}
     if not moved:
         return None
     most = max(moved.values(), key=abs)
     feels = f"small deviations feel a period {most:+.2%} off" if math.isfinite(most) else "no motion grazes"
     return (
         f"at the gap, stop.gap_m = {scene.stop.gap_m:g} m, the free frequency is {shift_at_gap(scene):+.2%} "
-        f"off that of small swings and {feels}, which can change the periods born at {', '.join(moved)} Hz; "
-        f"the model is linear, and `{COMMAND} shape` says what is left of them"
+        f"off that of small amplitudes and {feels}, which can change the periods born at "
+        f"{', '.join(moved)} Hz; the model is linear, and `{COMMAND} shape` says what is left of them"
     )
 
 
@@ -275,5 +271,5 @@ def of_the_letter(scene: Scene) -> bool:
 
 
 def periods_of(scene: Scene) -> Mapping[float, int]:
-    """The letter's frequencies, as those of the scene's spring [Hz], with the letter's periods."""
+    """The letter's frequencies, scaled to the scene's spring [Hz], with the letter's periods."""
     return {corresponding(scene, f): m for f, m in letter.PERIODS.items()}

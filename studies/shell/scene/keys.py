@@ -17,8 +17,12 @@ from studies.shell.scene.key import CALIBRATED, LETTER, OPEN, key
 MODE_LISTS = ("frequencies_hz", "decay_rates_per_s", "tip_values", "participation")
 """The lists of [modal_data], one entry a mode."""
 
+SHAPES = ("flat_u", "folded_u", "cantilever", "straight_strip", "modal_data")
+QUANTITIES = ("displacement", "rotation")
 SUPPORTS = ("clamped", "pinned", "guided", "free")
-MOST_ELEMENTS = 2000  # of a leg or a bend: a slip of the pen must not fill the memory
+RULES = ("strips", "constant_ratio", "constant_loss_factor", "rayleigh", "measured")
+LAWS = ("linear", "newton", "hertz", "hunt_crossley", "tsuji")
+FINEST = 2000  # elements of a leg or a bend: a slip of the pen must not fill the memory
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -26,10 +30,7 @@ class SpringKeys:
     """The leaf spring: a brass strip, with or without a glued damping tape."""
 
     kind: str = key(
-        "flat_u",
-        "",
-        "shape of the spring, or modal_data for modes that were measured",
-        choices=("flat_u", "folded_u", "cantilever", "straight_strip", "modal_data"),
+        "flat_u", "", "shape of the spring, or modal_data for modes that were measured", choices=SHAPES
     )
     leg_length_m: float = key(0.13, "m", "length of one leg, or of a straight strip", LETTER, low=0.0)
     bend_radius_m: float = key(0.009, "m", "radius of the bend of a U, to its middle line", low=0.0)
@@ -49,13 +50,9 @@ class SpringKeys:
     tape_density_kg_m3: float = key(1400.0, "kg/m^3", "density of the tape")
     tape_loss_factor: float = key(0.53907109242132, "1", "loss factor of the tape", CALIBRATED)
     elements_per_leg: int = key(
-        0,
-        "1",
-        "elements on a leg or straight strip; 0: 60 on each folded leg, else 120",
-        low=0,
-        high=MOST_ELEMENTS,
+        0, "1", "elements on a leg or straight strip; 0: 60 on each folded leg, else 120", low=0, high=FINEST
     )
-    elements_on_arc: int = key(0, "1", "elements on the bend of a folded_u; 0: 48", low=0, high=MOST_ELEMENTS)
+    elements_on_arc: int = key(0, "1", "elements on the bend of a folded_u; 0: 48", low=0, high=FINEST)
     start_support: str = key("clamped", "", "support at the start of a straight strip", choices=SUPPORTS)
     end_support: str = key("free", "", "support at the end of a straight strip", choices=SUPPORTS)
 
@@ -85,7 +82,7 @@ class ReadoutKeys:
         "displacement",
         "",
         "displacement along the drive (m) or rotation of the strip (rad)",
-        choices=("displacement", "rotation"),
+        choices=QUANTITIES,
     )
 
 
@@ -94,10 +91,7 @@ class DampingKeys:
     """Decay of the modes; c in q'' + c q' + omega^2 q, so that amplitudes fall as exp(-c t/2)."""
 
     kind: str = key(
-        "strips",
-        "",
-        "how the modes decay; of no effect with spring.kind modal_data",
-        choices=("strips", "constant_ratio", "constant_loss_factor", "rayleigh", "measured"),
+        "strips", "", "how the modes decay; of no effect with spring.kind modal_data", choices=RULES
     )
     decay_rate_per_s: float = key(
         3.56, "1/s", "strips: c of mode 1 (printed with Fig. 5), others in proportion", LETTER
@@ -170,12 +164,7 @@ class StopKeys:
 class ContactKeys:
     """Ball on plate."""
 
-    law: str = key(
-        "hertz",
-        "",
-        "what happens at the plate",
-        choices=("linear", "newton", "hertz", "hunt_crossley", "tsuji"),
-    )
+    law: str = key("hertz", "", "what happens at the plate", choices=LAWS)
     stiffness_n_per_m: float = key(
         0.0, "N/m", "linear: stiffness; 0: that with Hertz's contact time", low=0.0
     )
@@ -192,10 +181,7 @@ class FurtherStopKeys(ContactKeys, StopKeys):
 
     gap_m: float = key(StopKeys.gap_m, "m", "from the point at rest to the stop", low=1e-12)
     law: str = key(
-        "contact",
-        "",
-        "what happens at this stop; contact: as [contact] says",
-        choices=("contact", "linear", "newton", "hertz", "hunt_crossley", "tsuji"),
+        "contact", "", "what happens at this stop; contact: as [contact] says", choices=("contact", *LAWS)
     )
     side: int = key(-1, "1", "1: beside the plate of [stop]; -1: on the other side", low=-1, high=1)
     at: str = key("tip", "", "point of the spring that reaches it", choices=("tip", "readout"))

@@ -15,26 +15,18 @@ def approach_speed(frequency: float, gap: float, excess: float) -> float:
 
 def hertz_of(scene: Scene) -> HertzContact:
     """Hertz's law for the ball and the plate of the scene."""
-    return scene.make(
-        HertzContact.of_bodies,
-        {
-            "radius": "tip.ball_radius_m",
-            "youngs_modulus": "tip.ball_young_modulus_pa",
-            "poissons_ratio": "tip.ball_poisson_ratio",
-            "other_modulus": "tip.plate_young_modulus_pa",
-            "other_ratio": "tip.plate_poisson_ratio",
-        },
-    )
+    ball = {"youngs_modulus": "tip.ball_young_modulus_pa", "poissons_ratio": "tip.ball_poisson_ratio"}
+    plate = {"other_modulus": "tip.plate_young_modulus_pa", "other_ratio": "tip.plate_poisson_ratio"}
+    return scene.make(HertzContact.of_bodies, {"radius": "tip.ball_radius_m"} | ball | plate)
 
 
 def ball_mass(scene: Scene) -> float:
     """Mass of ball and mount, from which a law gets its numbers [kg]; SceneError if the ball has none."""
     mass = scene.modal_data.tip_mass_kg if scene.spring.kind == "modal_data" else scene.tip.mass_kg
     if not mass > 0:
-        raise SceneError(
-            f"contact.law is {scene.contact.law}, and contact.stiffness_n_per_m is "
-            f"{scene.contact.stiffness_n_per_m:g} N/m: both need the mass of the ball; give it above zero"
-        )
+        law, stiffness = scene.contact.law, f"{scene.contact.stiffness_n_per_m:g} N/m"
+        words = "both need the mass of the ball; give it above zero"
+        raise SceneError(f"contact.law is {law}, and contact.stiffness_n_per_m is {stiffness}: {words}")
     return mass
 
 

@@ -44,17 +44,13 @@ class MeasuredRates:
         return found
 
 
+RAYLEIGH = {"mass_coefficient": "damping.rayleigh_alpha_per_s"}
+RAYLEIGH |= {"stiffness_coefficient": "damping.rayleigh_beta_s"}
 DAMPING = {
     "strips": (beam.MeasuredDecay, {"decay_rate": "damping.decay_rate_per_s"}),
     "constant_ratio": (beam.ConstantRatio, {"ratio": "damping.ratio"}),
     "constant_loss_factor": (beam.ConstantLossFactor, {"loss_factor": "damping.loss_factor"}),
-    "rayleigh": (
-        beam.Rayleigh,
-        {
-            "mass_coefficient": "damping.rayleigh_alpha_per_s",
-            "stiffness_coefficient": "damping.rayleigh_beta_s",
-        },
-    ),
+    "rayleigh": (beam.Rayleigh, RAYLEIGH),
     "measured": (MeasuredRates, {"rates": "damping.measured_rates_per_s"}),
 }
 """damping.kind -> the rule, and its arguments, to which the rates are proportional, with their keys."""
@@ -91,13 +87,9 @@ def spring_of(scene: Scene) -> LeafSpring:
     beyond = {"folded_u": leg + math.pi * keys.bend_radius_m, "flat_u": keys.bend_radius_m}
     seen_at = scene.readout.arc_fraction * (leg + beyond.get(keys.kind, 0.0))
     readout = scene.make(beam.Readout, {"quantity": "readout.quantity"}, at=seen_at)
-    common: dict[str, Any] = {
-        "section": bare,
-        "damped_section": taped,
-        "tip": ball,
-        "readouts": {READOUT: readout},
-        "damped_span": None if taped is None else (0.0, keys.tape_coverage * leg),
-    }
+    common: dict[str, Any] = {"section": bare, "tip": ball, "readouts": {READOUT: readout}}
+    if taped:
+        common |= {"damped_section": taped, "damped_span": (0.0, keys.tape_coverage * leg)}
     length = {"length": "spring.leg_length_m"}
 
     def bent(length: float, radius: float, bend_radius: float) -> LeafSpring:
@@ -114,7 +106,7 @@ def spring_of(scene: Scene) -> LeafSpring:
 
 
 def elements_of(scene: Scene, spring: LeafSpring) -> tuple[int, ...]:
-    """Number of elements on each piece: those asked for, shared by length on a leg, or the default."""
+    """Number of elements on each piece: as given, shared by length on a leg, or the default."""
     keys, counts = scene.spring, []
     for piece, usual in zip(spring.centreline.pieces, beam.default_elements(spring), strict=True):
         straight = piece.curvature == 0.0
@@ -133,28 +125,25 @@ def modes_of(scene: Scene, count: int | None = None) -> Modes:
     wanted = scene.kept_modes if count is None else count
     spring = spring_of(scene)
     discretization = beam.assemble(spring, elements_of(scene, spring))
-    asked = min(discretization.n_dofs, wanted if spring.centreline.is_straight else 2 * wanted + 1)
+    tried = min(discretization.n_dofs, wanted if spring.centreline.is_straight else 2 * wanted + 1)
     while True:
-        modes = beam.natural_modes(discretization, asked)
+        modes = beam.natural_modes(discretization, tried)
         coupled = np.flatnonzero(modes.coupled)
         if coupled.size >= wanted:
             break
-        if asked == discretization.n_dofs:
+        if tried == discretization.n_dofs:
             raise SceneError(
                 f"modes.count must be at most {coupled.size}, the coupled modes of this mesh, not {wanted}: "
                 "keep fewer or give spring.elements_per_leg and spring.elements_on_arc more elements"
             )
-        asked = min(2 * asked, discretization.n_dofs)
+        tried = min(2 * tried, discretization.n_dofs)
     count = int(coupled[wanted - 1]) + 1
     shapes, omega = modes.shapes[:, :count], modes.omega[:count]
     energies = discretization.strain_energies(shapes).sum(axis=(0, 1))
-    return dataclasses.replace(
-        modes,
-        omega=np.where(omega > 0.0, np.sqrt(2.0 * energies), 0.0),
-        shapes=shapes,
-        readouts={name: row[:count] for name, row in modes.readouts.items()},
-        **{name: getattr(modes, name)[:count] for name in ("phi", "participation", "coupled")},
-    )
+    omega = np.where(omega > 0.0, np.sqrt(2.0 * energies), 0.0)
+    readouts = {name: row[:count] for name, row in modes.readouts.items()}
+    kept = {name: getattr(modes, name)[:count] for name in ("phi", "participation", "coupled")}
+    return dataclasses.replace(modes, omega=omega, shapes=shapes, readouts=readouts, **kept)
 
 
 def damping_of(scene: Scene) -> beam.Damping:
@@ -171,33 +160,24 @@ def model_of(scene: Scene) -> ModalModel:
         return model
     data = scene.modal_data
     order = np.argsort(data.frequencies_hz, kind="stable")[: scene.kept_modes]
-    lists = [np.array(getattr(data, name)) for name in MODE_LISTS]
-    if len({values.size for values in lists}) > 1 or not order.size:
+    columns = [np.array(getattr(data, name)) for name in MODE_LISTS]
+    if len({values.size for values in columns}) > 1 or not order.size:
         raise SceneError("spring.kind modal_data needs lists of equal length in modal_data, one entry a mode")
-    frequencies, rates, tip_values, participation = (values[order] for values in lists)
+    frequencies, rates, tip_values, participation = (values[order] for values in columns)
     keys = {"omega": "modal_data.frequencies_hz", "decay_rate": "modal_data.decay_rates_per_s"}
-    return scene.make(
-        ModalModel,
-        keys,
-        omega=2.0 * np.pi * frequencies,
-        decay_rate=rates,
-        phi=tip_values,
-        participation=participation,
-        static_compliance=data.static_compliance_m_per_n or None,
-        tip_mass=data.tip_mass_kg or None,
-        points={READOUT: beam.Point(row=tip_values)},
-        dimensionless=data.dimensionless,
-    )
+    lists = {"omega": 2.0 * np.pi * frequencies, "decay_rate": rates, "phi": tip_values}
+    tip = {"static_compliance": data.static_compliance_m_per_n or None, "tip_mass": data.tip_mass_kg or None}
+    own = {"points": {READOUT: beam.Point(row=tip_values)}, "dimensionless": data.dimensionless}
+    return scene.make(ModalModel, keys, **lists, participation=participation, **tip, **own)
 
 
 def require_drive_below(scene: Scene, model: ModalModel, frequency: float | None = None) -> None:
     """SceneError if a drive frequency, or `frequency` [Hz], lies above the highest mode of the model."""
     fastest, highest = frequency or max(scene.drive.frequencies_hz), float(model.frequencies_hz.max())
     if scene.drive.kind == "harmonic" and fastest > highest:
-        words = (
-            f"above the highest of the modes kept ({highest:.6g} Hz): drive more slowly or raise modes.count"
-        )
-        raise SceneError("drive.frequencies_hz", f"has {fastest:g} Hz, {words}")
+        words = f"above the highest of the modes kept ({highest:.6g} Hz)"
+        remedy = "drive more slowly or raise modes.count"
+        raise SceneError("drive.frequencies_hz", f"has {fastest:g} Hz, {words}: {remedy}")
 
 
 def backbone_of(scene: Scene) -> beam.Backbone:
@@ -212,7 +192,7 @@ def backbone_of(scene: Scene) -> beam.Backbone:
 
 
 def shift_at_gap(scene: Scene) -> float:
-    """What the amplitude of the gap changes in the free frequency, relative to small swings [1]."""
+    """What the amplitude of the gap changes in the free frequency, relative to small amplitudes [1]."""
     backbone = backbone_of(scene)
     return backbone.kappa * (scene.stop.gap_m / backbone.length) ** 2
 
@@ -255,9 +235,8 @@ def with_first_mode(scene: Scene) -> Scene:
     if not any(scene[name] == OPEN for name in names):
         return scene
     found = first_mode(scene)
-    values = {
-        name: float(f"{value:.9g}") for name, value in zip(names, found, strict=True) if scene[name] == OPEN
-    }
+    pairs = zip(names, found, strict=True)
+    values = {name: float(f"{value:.9g}") for name, value in pairs if scene[name] == OPEN}
     if math.isinf(found[0]):
         both = f"{names[0]} (unit s) and {names[1]} (unit 1/s)"
         raise SceneError(f"mode 1 of the spring does not oscillate: give {both}")

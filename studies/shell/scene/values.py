@@ -95,21 +95,14 @@ class Scene:
     def values(self) -> dict[str, object]:
         """Nested plain values, section -> key -> value, as a file holds them."""
         tables = dataclasses.asdict(self).items()
-        return {
-            name: table for name, table in tables if name != "origins" and table
-        }  # no empty list of stops
+        return {name: table for name, table in tables if name != "origins" and table}  # no empty stops
 
     def provenance(self) -> dict[str, str]:
-        """Dotted key -> letter, calibrated, assumed (a default), or what `replace` was told (else given)."""
+        """Dotted key -> letter, calibrated, assumed (a default), or as given to `replace`."""
         origins = dict(self.origins)
-        return {
-            key: known.provenance
-            if self[key] == known.default
-            else LETTER
-            if self[key] == known.printed
-            else origins.get(key, GIVEN)
-            for key, known in KEYS.items()
-        }
+        found = {key: origins.get(key, GIVEN) for key in KEYS}
+        found |= {key: LETTER for key, known in KEYS.items() if self[key] == known.printed}
+        return found | {key: known.provenance for key, known in KEYS.items() if self[key] == known.default}
 
     def dump(self) -> str:
         """Every key as TOML, with meaning, unit and what is valid, default and provenance as comments."""
@@ -142,9 +135,7 @@ class Scene:
         return USUAL_MODES
 
 
-SECTIONS: tuple[str, ...] = tuple(
-    entry.name for entry in dataclasses.fields(Scene) if entry.name not in ("stops", "origins")
-)
+SECTIONS = tuple(one.name for one in dataclasses.fields(Scene) if one.name not in ("stops", "origins"))
 KEYS: dict[str, Key] = {
     f"{section}.{entry.name}": entry.metadata["key"]
     for section in SECTIONS
@@ -250,10 +241,8 @@ def doubts(scene: Scene) -> Iterator[str]:
     omega, leg, shaped = 2.0 * math.pi / period, spring.leg_length_m, spring.kind != "modal_data"
     damping, stiffness, radius = scene.damping, scene.contact.stiffness_n_per_m, scene.tip.ball_radius_m
     if shaped and gap > 0.1 * leg:
-        yield (
-            f"stop.gap_m is {gap:g} m, more than a tenth of spring.leg_length_m {leg:g} m: the "
-            "theory is that of small motion"
-        )
+        wide = f"stop.gap_m is {gap:g} m, more than a tenth of spring.leg_length_m {leg:g} m"
+        yield f"{wide}: the theory is that of small motion"
     if shaped and radius > leg:
         yield f"tip.ball_radius_m is {radius:g} m, more than spring.leg_length_m {leg:g} m"
     farthest = max(scene.drive.frequencies_hz, key=lambda frequency: abs(math.log(frequency * period)))
@@ -266,19 +255,13 @@ def doubts(scene: Scene) -> Iterator[str]:
         yield f"scan.born_excess is {scene.scan.born_excess:g}, far from grazing"
     soft = scene.tip.mass_kg * omega**2
     if scene.contact.law == "linear" and 0.0 < stiffness < 10.0 * soft:
-        yield (
-            f"contact.stiffness_n_per_m is {stiffness:g} N/m, below 10 times that of the ball on mode 1 "
-            f"({soft:.3g} N/m): a spring, no stop"
-        )
-    ratios = {
-        "strips": {"damping.decay_rate_per_s": 0.5 * damping.decay_rate_per_s / omega},
-        "constant_ratio": {"damping.ratio": damping.ratio},
-        "constant_loss_factor": {"damping.loss_factor": 0.5 * damping.loss_factor},
-        "rayleigh": {
-            "damping.rayleigh_alpha_per_s": 0.5 * damping.rayleigh_alpha_per_s / omega,
-            "damping.rayleigh_beta_s": 0.5 * damping.rayleigh_beta_s * omega,
-        },
-    }
-    for name, ratio in ratios.get(damping.kind, {}).items() if shaped else ():
+        words = f"below 10 times that of the ball on mode 1 ({soft:.3g} N/m): a spring, no stop"
+        yield f"contact.stiffness_n_per_m is {stiffness:g} N/m, {words}"
+    halves = {"decay_rate_per_s": 0.5 / omega, "ratio": 1.0, "loss_factor": 0.5}
+    halves |= {"rayleigh_alpha_per_s": 0.5 / omega, "rayleigh_beta_s": 0.5 * omega}
+    kinds = {"strips": "decay_rate_per_s", "constant_ratio": "ratio", "constant_loss_factor": "loss_factor"}
+    kinds |= {"rayleigh": "rayleigh_alpha_per_s rayleigh_beta_s"}
+    for name in kinds.get(damping.kind, "").split() if shaped else ():
+        ratio = halves[name] * getattr(damping, name)
         if ratio > 0.5:
-            yield f"{name} makes a damping ratio of {ratio:.3g}; above 0.5 no mode swings"
+            yield f"damping.{name} makes a damping ratio of {ratio:.3g}; above 0.5 no mode oscillates"
