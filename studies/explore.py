@@ -109,7 +109,7 @@ class Window:
             observe = strobed.tip if isinstance(strobed, StroboscopicMap) else lambda points: points[:, 0]
             values = excess + np.linspace(-SPAN, SPAN, count)
             scans = up_and_down(strobed, values, observe=observe, settle_cycles=cycles, early=False)
-            words = f"period {found.period}" if found.period else "no period up to 64"
+            words = f"period {found.m}" if found.m else "no period up to 64"
         except (ContactError, Refusal) as error:
             self.state, words = None, str(error)
         else:
@@ -124,7 +124,7 @@ class Window:
             plane.plot(x, y, **points(0))
             for way, look in (("up", UP), ("down", DOWN)):
                 one = scans[way]
-                strobe_points(diagram, one.excess, scale * one.points, one.period > 0, look, "")
+                strobe_points(diagram, one.excess, scale * one.points, one.m > 0, look, "")
             diagram.axvline(excess, **GUIDE)
         trace.set_title(words, loc="left", wrap=True)
         self.figure.canvas.draw_idle()

@@ -48,7 +48,7 @@ def orbit_drawn() -> Drawn:
     """Base amplitudes and displacements at the strobes [mm], and modal coordinates of the p4 orbit [m]."""
     oscillator = beam_at(SCENE, letter.TIME_TRACE_HZ, model_of(SCENE))
     strobed, grazing = StroboscopicMap(oscillator=oscillator), 1e3 * oscillator.grazing_amplitude()
-    fold = fold_of(Shooting(oscillator=oscillator, period=4))
+    fold = fold_of(Shooting(oscillator=oscillator, m=4))
     assert fold is not None
     settle: dict[str, Any] = {"settle_cycles": 1000, "record_cycles": 4, "observe": strobed.tip}
     scans = up_and_down(strobed, -fold.excess * EXCESSES, **settle)

@@ -52,7 +52,7 @@ print(f"effective restitution {hit.restitution:.2f}, delay {1e3 * hit.delay:.2f}
 # %% How far below grazing the orbit remains: followed to its fold
 from contact.orbits import Shooting, fold_of
 
-fold = fold_of(Shooting(oscillator=beam, period=4))
+fold = fold_of(Shooting(oscillator=beam, m=4))
 assert fold is not None
 print(f"p4 ends {-100 * fold.excess:.2f} % below grazing; Floquet multiplier {fold.multipliers[0].real:.6f}")
 

@@ -88,7 +88,7 @@ def time_in_words(us: float) -> str:
 def test_the_rows_of_the_tables_are_computed_values(frequency):
     scene, _ = least_modes(read_scene("letter"), transitions.needs)
     rows = rows_at(scene, frequency, model_of(scene)).rows
-    periods = [f"p{row.period}" for row in rows if row.description != "two_parameters"]
+    periods = [f"p{row.m}" for row in rows if row.description != "two_parameters"]
     assert f"| {frequency:.2f} | p{rows[0].letter} | {' | '.join(periods)} |" in TEXTS["README"]
     ends = " | ".join(end_in_words(row.excess_down) for row in rows)
     assert f"| {frequency:.2f} | {periods[-1]} | {ends} |" in TEXTS["transitions"]

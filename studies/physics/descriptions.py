@@ -36,8 +36,8 @@ from contact.orbits import (
     OrbitDiagram,
     OrbitEnd,
     Settled,
-    born,
     fold_excess,
+    onset_orbit,
     orbit_diagram,
     orbit_end,
 )
@@ -72,25 +72,25 @@ def strobed_at(name: str, scene: Scene, frequency: float, model: ModalModel | No
 
 
 def fold_at(
-    name: str, scene: Scene, frequency: float, period: int, model: ModalModel | None = None
+    name: str, scene: Scene, frequency: float, m: int, model: ModalModel | None = None
 ) -> float | None:
     """F_m/F_g - 1 at the fold of p_m with one impact, m = `period`; None without one, and for m < 2."""
     if name not in ("two_parameters", "kicks"):
-        return fold_excess(strobed_at(name, scene, frequency, model), period)
+        return fold_excess(strobed_at(name, scene, frequency, model), m)
     beam = beam_at(scene, frequency, model)
     if name == "kicks":
-        return kick_fold(StroboscopicMap(oscillator=beam), period)
-    return fold_of_kicks(KickFamily(oscillator=beam, period=period)) if period > 1 else None
+        return kick_fold(StroboscopicMap(oscillator=beam), m)
+    return fold_of_kicks(KickFamily(oscillator=beam, m=m)) if m > 1 else None
 
 
-def fold_orbit(oscillator: ImpactOscillator, period: int) -> SingleImpactOrbit | None:
+def fold_orbit(oscillator: ImpactOscillator, m: int) -> SingleImpactOrbit | None:
     """The orbit p_m, m = `period`, at its fold under Newton's law, in closed form; None if there is none."""
-    return MaximalFamily.from_oscillator(oscillator, period=period).fold()
+    return MaximalFamily.from_oscillator(oscillator, m=m).fold()
 
 
-def kick_fold(strobed: StroboscopicMap, period: int) -> float | None:
+def kick_fold(strobed: StroboscopicMap, m: int) -> float | None:
     """The fold of p_m by the kick that a collision gives all modes, without simulation of the orbit."""
-    found = KickFamily(oscillator=strobed.oscillator, period=period).fold() if period > 1 else None
+    found = KickFamily(oscillator=strobed.oscillator, m=m).fold() if m > 1 else None
     return None if found is None else found.excess
 
 
@@ -137,7 +137,7 @@ class StrobePoint:
     direction: Annotated[str, "direction of the scan"]
     amplitude: Annotated[float, "drive amplitude [m]"]
     excess: float
-    period: int
+    m: int
     strobe: Annotated[int, "number of the strobe"]
     value: Annotated[float, "strobed read-out; m, or rad for a rotation, or for the map its x, a pure number"]
 
@@ -147,9 +147,7 @@ def strobe_points_of(f: float, name: str, grazing: float, ways: Mapping[str, Dia
     return [
         StrobePoint(f, name, way, grazing * (1.0 + excess), excess, period, number, value)
         for way, scan in ways.items()
-        for excess, period, points in zip(
-            scan.excess.tolist(), scan.period.tolist(), scan.points, strict=True
-        )
+        for excess, period, points in zip(scan.excess.tolist(), scan.m.tolist(), scan.points, strict=True)
         for number, value in enumerate(points[: period or None].tolist())
     ]
 
@@ -158,8 +156,8 @@ def born_and_lowered(
     strobed: Strobed, excess: float, most_cycles: int
 ) -> tuple[Settled[Any], OrbitEnd[Any] | None]:
     """The orbit that is born at `excess`, and its end when the amplitude is lowered; None for p1 and none."""
-    orbit = born(strobed, excess, most_cycles=most_cycles)
-    if orbit.period < 2:
+    orbit = onset_orbit(strobed, excess, most_cycles=most_cycles)
+    if orbit.m < 2:
         return orbit, None
     return orbit, orbit_end(strobed, orbit.end, excess, most_cycles=most_cycles)
 
@@ -177,9 +175,9 @@ def falls(excesses: Sequence[float]) -> bool:
     return bool(np.all(np.diff(excesses) <= ROUNDING))
 
 
-def word(period: int | None) -> str:
+def word(m: int | None) -> str:
     """A period in words: "p4"; "no period up to 64" for 0, a motion that did not settle; "-" for None."""
-    return "-" if period is None else f"p{period}" if period else "no period up to 64"
+    return "-" if m is None else f"p{m}" if m else "no period up to 64"
 
 
 def words(periods: Mapping[str, int | None]) -> str:

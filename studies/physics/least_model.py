@@ -42,7 +42,7 @@ from numpy.typing import NDArray
 
 from beam import InvalidValue, ModalModel
 from contact import ImpactOscillator, StroboscopicMap, first_collision, simulate
-from contact.orbits import born
+from contact.orbits import onset_orbit
 from studies import letter
 from studies.physics.descriptions import kick_fold, or_none
 from studies.shell.scene import Scene, SceneError, beam_at, model_of, periods_of
@@ -122,19 +122,19 @@ def collisions(name: str, at: At, frequency: float, excess: float = TRACE_EXCESS
 def tip_trace(at: At, frequency: float, excess: float = TRACE_EXCESS) -> Answer:
     """Impacts of the orbit settled at `excess`, and tip over gap during one period; 0 without an orbit."""
     oscillator = at(frequency)
-    orbit = born(StroboscopicMap(oscillator=oscillator), excess)
+    orbit = onset_orbit(StroboscopicMap(oscillator=oscillator), excess)
     driven = oscillator.with_excess(excess)
-    if orbit.period == 0:
+    if orbit.m == 0:
         return np.zeros(1)
-    times = orbit.end.time + np.arange(orbit.period * SAMPLES) / SAMPLES * driven.period
-    run = simulate(driven, orbit.end, periods=orbit.period, times=times)
+    times = orbit.end.time + np.arange(orbit.m * SAMPLES) / SAMPLES * driven.period
+    run = simulate(driven, orbit.end, periods=orbit.m, times=times)
     return np.append(orbit.impacts, driven.tip(run.displacement) / driven.stop.gap)
 
 
 def born_at(at: At, frequency: float, excess: float = BORN) -> Answer:
     """Period and impacts of the orbit that settles at `excess`; both are 0 without an orbit."""
-    orbit = born(StroboscopicMap(oscillator=at(frequency)), excess)
-    return np.array([orbit.period, orbit.impacts], dtype=float) * (orbit.period > 0)
+    orbit = onset_orbit(StroboscopicMap(oscillator=at(frequency)), excess)
+    return np.array([orbit.m, orbit.impacts], dtype=float) * (orbit.m > 0)
 
 
 def fold_of_born(fold: Fold, at: At, frequency: float, excess: float = BORN) -> Answer:
@@ -143,9 +143,9 @@ def fold_of_born(fold: Fold, at: At, frequency: float, excess: float = BORN) -> 
     Orbits with several impacts mostly end otherwise: then the excess is not a number.
     """
     strobed = StroboscopicMap(oscillator=at(frequency))
-    orbit = born(strobed, excess)
-    end = math.nan if orbit.period > 1 and orbit.impacts > 1 else fold(strobed, orbit.period)
-    return None if end is None else np.array([end, float(orbit.period)])
+    orbit = onset_orbit(strobed, excess)
+    end = math.nan if orbit.m > 1 and orbit.impacts > 1 else fold(strobed, orbit.m)
+    return None if end is None else np.array([end, float(orbit.m)])
 
 
 def error_of_trace(answer: Values, reference: Values) -> float:

@@ -27,7 +27,7 @@ from scipy.interpolate import PchipInterpolator
 
 from beam import ModalModel, Refusal
 from contact import ContactError, DelayedRestitution, ImpactOscillator, State, first_collision
-from contact.orbits import Kick, KickFamily, Shooting, born_period, fold_excess
+from contact.orbits import Kick, KickFamily, Shooting, fold_excess, onset_m
 from studies.shell.scene import Scene, SceneError, beam_at, nordmark_at, single_mode_at
 
 EXCESSES = np.geomspace(1e-6, 0.3, 45)  # of the first collisions
@@ -104,13 +104,11 @@ class Extracted:
     fold_of_map: Annotated[float | None, "end of the orbit of that map, F/F_g − 1"]
 
 
-def extracted(
-    scene: Scene, frequency: float, model: ModalModel, *, end: State, period: int
-) -> Extracted | None:
+def extracted(scene: Scene, frequency: float, model: ModalModel, *, end: State, m: int) -> Extracted | None:
     """What describes the settled orbit p_m that ends at `end`; None where it is not one with one impact."""
     beam, oscillator = beam_at(scene, frequency, model), two_parameters_at(scene, frequency, model)
     law, excess = oscillator.stop.law, scene.scan.born_excess
-    family = Shooting(oscillator=oscillator.with_excess(excess), period=period)
+    family = Shooting(oscillator=oscillator.with_excess(excess), m=m)
     try:
         speed = abs(family.from_state(end).speed)
     except (ContactError, Refusal):
@@ -118,15 +116,15 @@ def extracted(
     assert isinstance(law, DelayedRestitution) and callable(law.restitution) and callable(law.delay)
     restitution = law.restitution(speed)
     strobed = replace(nordmark_at(scene, frequency), restitution=restitution)
-    born = born_period(strobed, excess, most_cycles=max(scene.scan.settle_cycles, 1))
+    born = onset_m(strobed, excess, most_cycles=max(scene.scan.settle_cycles, 1))
     return Extracted(
         frequency_hz=frequency,
-        m=period,
+        m=m,
         approach_m_per_s=speed,
         restitution=restitution,
         delay_s=law.delay(speed),
         map=born,
         fold_of_map=fold_excess(strobed, born),
-        ringing_left=float(np.exp(-0.5 * model.decay_rate[1:] * period / frequency).max(initial=0.0)),
-        fold=fold_of_kicks(KickFamily(oscillator=beam, period=period)),
+        ringing_left=float(np.exp(-0.5 * model.decay_rate[1:] * m / frequency).max(initial=0.0)),
+        fold=fold_of_kicks(KickFamily(oscillator=beam, m=m)),
     )

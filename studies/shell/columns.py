@@ -30,7 +30,7 @@ UNITS |= {"kg^(-1/2)": "per_sqrt_kg", "kg^(1/2)": "sqrt_kg", "kg^(-1/2) m^(-1)":
 """Unit -> the end of a column's name."""
 
 USUAL = {"frequency_hz": "drive frequency [Hz]", "excess": "excess F/F_g - 1", "m": "m"}
-USUAL |= {"period": "period m; 0 for a motion without a period", "restitution": "restitution tau"}
+USUAL |= {"m": "period m; 0 for a motion without a period", "restitution": "restitution tau"}
 """Field -> its words, where the row gives none."""
 
 WORDS = re.compile(r"(?P<heading>[^\[;]*[^\[; ]) *(\[(?P<unit>[^\]]+)\])?(; (?P<note>.+))?")

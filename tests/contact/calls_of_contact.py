@@ -28,12 +28,12 @@ def bent() -> contact.NonlinearMode:
 
 @cache
 def closed() -> contact.MaximalFamily:
-    return contact.MaximalFamily.from_oscillator(EQ_1, period=5)
+    return contact.MaximalFamily.from_oscillator(EQ_1, m=5)
 
 
 def closed_forms(oscillator: contact.ImpactOscillator) -> None:
     """The orbits of Newton's law; TypeError for another one."""
-    family = contact.MaximalFamily.from_oscillator(oscillator, period=5)
+    family = contact.MaximalFamily.from_oscillator(oscillator, m=5)
     fold = family.fold()
     assert fold is not None and family.orbits(0.01)
     assert family.orbit(0.1).state().time == family.orbit(0.1).phase and family.excess(1e-3) < 1.0
@@ -229,11 +229,11 @@ CONTACT = (
     of(lambda state, count, factors: nordmark().orbit(state, count, factors=factors),
        dict(state=[0.0, 0.0], count=3, factors=[1.0, 1.1, 1.2]), name="NordmarkMap.orbit",
        value=dict(state=each([0.0], [NAN, 0.0]), count=-1, factors=each([1.1], [1.0, 1.0, 0.0]))),
-    of(contact.band, BAND | dict(period=4),
-       kind=dict(period="p4"), value=dict(period=1, free_period=-1.0, whole_turns=-1, y_line=3)),
-    of(contact.maximal_period, lambda: dict(nordmark=nordmark()),
+    of(contact.frequency_band, BAND | dict(m=4),
+       kind=dict(m="p4"), value=dict(m=1, free_period=-1.0, whole_turns=-1, y_line=3)),
+    of(contact.maximal_m, lambda: dict(nordmark=nordmark()),
        kind=dict(nordmark=each(None, 4, [nordmark()]))),
-    of(contact.maximal_periods, lambda: dict(nordmark=nordmark()),
+    of(contact.coexisting_m, lambda: dict(nordmark=nordmark()),
        kind=dict(nordmark=each(None, 0.5, "map"))),
     of(contact.collisions,
        lambda c: dict(trajectory=contact.simulate(c.driven, c.state, periods=5), unfinished="drop"),
@@ -247,17 +247,17 @@ CONTACT = (
        over="motion"),
     of(closed_forms, lambda c: dict(oscillator=c.oscillator), name="MaximalFamily.from_oscillator",
        over="family"),
-    of(contact.MaximalFamily.from_oscillator, lambda: dict(oscillator=EQ_1, period=3, restitution=0.1),
+    of(contact.MaximalFamily.from_oscillator, lambda: dict(oscillator=EQ_1, m=3, restitution=0.1),
        name="MaximalFamily.from_oscillator, refused",
        kind=dict(oscillator=None),
-       value=dict(period=0, restitution=says(-0.1, "restitution is -0.1"),
+       value=dict(m=0, restitution=says(-0.1, "restitution is -0.1"),
                   oscillator=each(UNDRIVEN, LOADED, TWO_STOPS))),
-    of(lambda period, speed, rho, excess: (
-           contact.MapFamily(nordmark(), period).orbit(speed),
-           contact.MapFamily(nordmark(), period).at_rho(rho),
-           contact.MapFamily(nordmark(), period).orbits(excess)),
-       dict(period=4, speed=0.1, rho=0.01, excess=0.01), name="MapFamily",
-       kind=dict(excess="1"), value=dict(period=0, speed=says(0.0, "speed is 0.0 [1]"), rho=NAN)),
+    of(lambda m, speed, rho, excess: (
+           contact.MapFamily(nordmark(), m).orbit(speed),
+           contact.MapFamily(nordmark(), m).at_rho(rho),
+           contact.MapFamily(nordmark(), m).orbits(excess)),
+       dict(m=4, speed=0.1, rho=0.01, excess=0.01), name="MapFamily",
+       kind=dict(excess="1"), value=dict(m=0, speed=says(0.0, "speed is 0.0 [1]"), rho=NAN)),
     of(lambda speed: closed().orbit(speed), dict(speed=0.1), name="MaximalFamily.orbit",
        kind=dict(speed="fast"), value=dict(speed=each(0.0, NAN))),
     of(lambda excess: closed().orbits(excess), dict(excess=1e-3), name="MaximalFamily.orbits",

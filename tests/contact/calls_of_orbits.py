@@ -12,7 +12,7 @@ from contact import Regime, orbits
 from contact.touch.passage import Touches
 
 # an orbit of another period, of the same one with more touches, and of an oscillator with another gap
-P4 = says(dataclasses.replace(HERTZ.family, period=4).at_speed(0.1), "has 4 drive periods; it must have 5")
+P4 = says(dataclasses.replace(HERTZ.family, m=4).at_speed(0.1), "has 4 drive periods; it must have 5")
 TWICE = says(
     dataclasses.replace(HERTZ.orbit, record=Touches(*(np.repeat(each, 2, 0) for each in HERTZ.orbit.record))),
     "has 2 touches",
@@ -47,8 +47,8 @@ DERIVATIVES = {"orbit_derivatives": orbits.orbit_derivatives, "excess_derivative
 
 # fmt: off
 ORBITS = (
-    of(orbits.KickFamily, lambda: dict(oscillator=EQ_1, period=5),
-       kind=dict(oscillator=None), value=dict(period=each(0, 2.5), oscillator=each(LOADED, IDLE, TWO_STOPS))),
+    of(orbits.KickFamily, lambda: dict(oscillator=EQ_1, m=5),
+       kind=dict(oscillator=None), value=dict(m=each(0, 2.5), oscillator=each(LOADED, IDLE, TWO_STOPS))),
     of(orbits.KickFamily.fold, lambda c: dict(self=c.kicks), over="family",
        kind=dict(speeds="all"), value=dict(speeds=each((0.5, 0.01), (0.0, 1.0)))),
     of(orbits.KickFamily.orbits, lambda c: dict(self=c.kicks, excess=0.01), over="family"),
@@ -58,16 +58,16 @@ ORBITS = (
        name="KickFamily.orbit_of, refused", kind=dict(kick=each(None, HERTZ.kicked))),
     *(of(getattr(orbits.KickFamily, name), lambda c, given=given: dict(self=c.kicks) | given(c),
          name=f"KickFamily.{name}", over="speeds") for name, given in KICK_CALLS.items()),
-    of(orbits.Shooting, lambda: dict(oscillator=HERTZ.oscillator, period=5),
+    of(orbits.Shooting, lambda: dict(oscillator=HERTZ.oscillator, m=5),
        kind=dict(oscillator="eq_1"),
-       value=dict(period=each(0, 1.5), impacts=0, oscillator=each(UNDRIVEN, IDLE, TWO_STOPS))),
+       value=dict(m=each(0, 1.5), impacts=0, oscillator=each(UNDRIVEN, IDLE, TWO_STOPS))),
     of(orbits.Shooting.orbit, lambda c: dict(self=c.family, speed=c.speed),
        name="Shooting.orbit", over="speeds"),
     of(orbits.Shooting.at_speed, lambda c: dict(self=c.family, speed=c.speed),
        name="Shooting.at_speed", over="speeds",
        kind=dict(speed=None, near=3), value=dict(speed=each(0.0, -0.1), near=P4)),
     of(orbits.Shooting.at_speed, lambda c: dict(
-           self=orbits.Shooting(oscillator=c.oscillator, period=2, impacts=3), speed=2 * c.speed),
+           self=orbits.Shooting(oscillator=c.oscillator, m=2, impacts=3), speed=2 * c.speed),
        name="Shooting.at_speed, three touches", over="family"),
     of(orbits.Shooting.at_excess, lambda c: dict(self=c.family, excess=1.01 * c.orbit.excess, near=c.orbit),
        name="Shooting.at_excess", over="speeds", kind=dict(near=None),
@@ -75,7 +75,7 @@ ORBITS = (
     of(orbits.Shooting.at_excess, lambda c: dict(self=c.family, excess=0.01, near=c.orbit),
        name="Shooting.at_excess, far away", over="speeds"),
     of(orbits.Shooting.from_state, lambda c: dict(
-           self=orbits.Shooting(oscillator=c.driven, period=5), state=c.state),
+           self=orbits.Shooting(oscillator=c.driven, m=5), state=c.state),
        name="Shooting.from_state", over="family"),
     *(of(getattr(orbits.Shooting, name), lambda c, given=given: dict(self=c.family) | given(c),
          name=f"Shooting.{name}", over="family") for name, given in SHOOTING_CALLS.items()),
@@ -111,29 +111,29 @@ ORBITS = (
        over="starts", kind=dict(oscillator=None, state=[0.0], changes=each(CHANGE, [3.0])),
        value=dict(oscillator=each(UNDRIVEN, TWO_STOPS), state=says(at(GAP, Regime.CONTACT), "regime"))),
     *(of(orbits.settle, lambda c, prove=prove: dict(
-             strobed=c.strobed, state=c.state, most_cycles=256, largest_period=64, tolerance=1e-9,
+             strobed=c.strobed, state=c.state, most_cycles=256, largest_m=64, tolerance=1e-9,
              prove=prove),
          name=name, over="starts", kind=dict(strobed=NO_MAP),
-         value=dict(largest_period=0, most_cycles=-1, tolerance=-1.0))
+         value=dict(largest_m=0, most_cycles=-1, tolerance=-1.0))
       for name, prove in {"settle": True, "settle, unproved": False}.items()),
     *(of(call, lambda c: dict(strobed=c.strobed, excess=1e-3, most_cycles=256), over="motion",
          kind=dict(strobed=NO_MAP), value=dict(excess=-2.0, most_cycles=-1, below=each(0.5, 0.0, NAN)))
-      for call in (orbits.born, orbits.born_period)),
-    of(orbits.fold_excess, lambda c: dict(strobed=c.strobed, period=5), over="motion",
-       kind=dict(strobed=each(*NO_MAP, 5)), value=dict(period=2.5)),
+      for call in (orbits.onset_orbit, orbits.onset_m)),
+    of(orbits.fold_excess, lambda c: dict(strobed=c.strobed, m=5), over="motion",
+       kind=dict(strobed=each(*NO_MAP, 5)), value=dict(m=2.5)),
     of(orbits.orbit_end, lambda c: dict(
            strobed=c.strobed, state=c.fast, excess=0.02, most_cycles=512, first_step=2e-4, relative=0.01,
            absolute=1e-7, lowest=-0.5), over="motion",
        kind=dict(strobed=EQ_1), value=dict(first_step=0.0, absolute=0.0, relative=-1.0, lowest=-1.0)),
     of(orbits.orbit_diagram, lambda c: dict(
            strobed=c.strobed, excesses=[1e-3, -1e-3], state=c.state, observe=c.strobed.tip, settle_cycles=128,
-           record_cycles=40, largest_period=64), over="starts",
+           record_cycles=40, largest_m=64), over="starts",
        kind=dict(strobed=EQ_1, excesses="1", observe=each(3, says(lambda p: "tip", "observe(points) is"))),
        value=dict(observe=says(lambda p: p, "observe(points) has shape"), settle_cycles=-1,
                   excesses=each(says([], "excesses is empty"), [[1e-3]]))),
-    of(orbits.period_of, lambda c: dict(
+    of(orbits.repeats_after, lambda c: dict(
            points=c.strobed.orbit(c.state, 20).points, impacts=c.strobed.orbit(c.state, 20).impacts,
-           largest_period=8, tolerance=1e-9), over="motion",
+           largest_m=8, tolerance=1e-9), over="motion",
        kind=dict(points="p"), value=dict(impacts=[0], points=each(
            [0.0], np.zeros((20, 0)), says([[0.0]] * 3, "points has 3 strobes")))),
     of(orbits.AmplitudeScan, lambda: dict(oscillator=EQ_1, most_cycles=128),
@@ -142,17 +142,17 @@ ORBITS = (
     of(lambda **given: orbits.AmplitudeScan(oscillator=EQ_1, most_cycles=128)(**given),
        dict(frequency=22.2, excesses=[-1e-3]), name="AmplitudeScan, a column", kind=dict(excesses="all"),
        value=dict(frequency=0.0, excesses=says([1e-3, 0.0], "excesses must be"))),
-    of(orbits.strobe_derivatives, lambda c: dict(strobed=c.below, state=c.below.steady(), period=2),
+    of(orbits.strobe_derivatives, lambda c: dict(strobed=c.below, state=c.below.steady(), m=2),
        over="motion", kind=dict(strobed=None, state=[0.0, 0.0]),
-       value=dict(period=each(0, 1.5), state=OFF_STROBE)),
-    of(orbits.cloud, lambda c: dict(
-           strobed=c.below, state=c.below.steady(), period=2, deviation=1e-3, memory=0.5), over="motion",
-       kind=dict(strobed=3.0), value=dict(deviation=each(-1e-4, NAN), memory=each(1.0, -0.1, NAN), period=0)),
+       value=dict(m=each(0, 1.5), state=OFF_STROBE)),
+    of(orbits.strobe_covariance, lambda c: dict(
+           strobed=c.below, state=c.below.steady(), m=2, deviation=1e-3, memory=0.5), over="motion",
+       kind=dict(strobed=3.0), value=dict(deviation=each(-1e-4, NAN), memory=each(1.0, -0.1, NAN), m=0)),
     of(orbits.map_exponents, lambda c: dict(strobed=c.strobed, state=c.state, count=5, align=0),
        over="starts", kind=dict(strobed=each(None, EQ_1)), value=dict(count=1, align=-1)),
-    of(orbits.orbit_exponents, lambda c: dict(strobed=c.below, state=c.below.steady(), period=2),
-       over="motion", kind=dict(strobed=None), value=dict(period=each(0, 1.5), state=THREE_MODES)),
-    of(orbits.orbit_exponents, lambda c: dict(strobed=c.strobed, state=c.state, period=5),
+    of(orbits.orbit_exponents, lambda c: dict(strobed=c.below, state=c.below.steady(), m=2),
+       over="motion", kind=dict(strobed=None), value=dict(m=each(0, 1.5), state=THREE_MODES)),
+    of(orbits.orbit_exponents, lambda c: dict(strobed=c.strobed, state=c.state, m=5),
        name="orbit_exponents, of no orbit", over="starts"),
 )
 # fmt: on

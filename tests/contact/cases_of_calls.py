@@ -92,11 +92,11 @@ class Case:
 
     @cached_property
     def kicks(self) -> KickFamily:
-        return KickFamily(oscillator=self.oscillator, period=5)
+        return KickFamily(oscillator=self.oscillator, m=5)
 
     @cached_property
     def family(self) -> Shooting:
-        return Shooting(oscillator=self.oscillator, period=5)
+        return Shooting(oscillator=self.oscillator, m=5)
 
     @property
     def speed(self) -> float:

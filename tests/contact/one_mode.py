@@ -42,7 +42,7 @@ class Period:
 
     def __init__(self, single: ImpactOscillator) -> None:
         self.system = strobed_system(single)
-        self.motion, self.table = self.system.motion, self.system.table
+        self.numbers, self.table = self.system.numbers, self.system.table
         assert self.table is not None
         self.log, self.log_state = np.empty(110_000, dtype=TOUCH), np.empty((110_000, 4))
 
@@ -57,13 +57,13 @@ class Period:
         """Status, impacts and approach velocities."""
         counts = np.zeros(1, dtype=np.int64)
         recorder = strobes_only(np.empty((1, 2)), counts)._replace(log=self.log, log_state=self.log_state)
-        status = advance(self.motion, u, v, runs, int(runs[0]["period"]) + 1, 0.0, recorder, None)
+        status = advance(self.numbers, u, v, runs, int(runs[0]["period"]) + 1, 0.0, recorder, None)
         rows = self.log[: recorder.marks[0]["logged"]]
         return status, int(counts[0]), rows["approach"][rows["kind"] == IMPACT]
 
     def size(self, u, v) -> float:
         """Deviation in the norm whose square never grows [m]."""
-        m = self.motion
+        m = self.numbers
         return abs(m.phi[0]) * math.hypot(u[0], v[0] / m.omega[0])
 
     def compare(self, u, v, periods: int) -> tuple[float, int, int]:
@@ -73,7 +73,7 @@ class Period:
         impact at speed s turns an error d of the tip displacement into (1 + tau) a d/s of its velocity, a the
         greatest acceleration.
         """
-        m, runs = self.motion, at_a_strobe()
+        m, runs = self.numbers, at_a_strobe()
         worst, impacts, lefts = 0.0, 0, 0
         for _ in range(periods):
             ours = (u.copy(), v.copy(), runs.copy())
@@ -99,7 +99,7 @@ class Period:
 
 def at_a_strobe() -> np.ndarray:
     """A run that starts at a strobe, off the wall."""
-    return start_of(oscillator().motion(), State.rest(1), 0, 0.0)[2]
+    return start_of(oscillator().numbers(), State.rest(1), 0, 0.0)[2]
 
 
 ROUNDINGS = 40.0
@@ -109,7 +109,7 @@ motion in each of a flight's parts; the worst seen in two million periods is 11.
 
 def compared(single: ImpactOscillator, periods: int) -> tuple[int, int]:
     """Impacts, and periods that the fast loop leaves to the general one, of motions from rest that agree."""
-    u, v, _ = start_of(single.motion(), State.rest(1), 0, 0.0)
+    u, v, _ = start_of(single.numbers(), State.rest(1), 0, 0.0)
     worst, impacts, left = Period(single).compare(u, v, periods)
     assert worst < ROUNDINGS
     return impacts, left

@@ -46,7 +46,7 @@ class Curve:
         with_start = np.linalg.solve(steady, np.column_stack([-tip, [0.0, 1.0]]))
         (driven, phase), like = driven_at(oscillator, drive), self.like
         known = Sensitivities(oscillator=driven)
-        orbit, miss, flow = shoot(known, phase, np.array(start), like.period, like.impacts)
+        orbit, miss, flow = shoot(known, phase, np.array(start), like.m, like.impacts)
         size, weight = math.hypot(*drive), np.append(self.scale[:n], self.like.amplitude)
         rest = np.append(miss, size - oscillator.driven.amplitude) / weight
         closing = flow @ np.vstack([np.eye(n, n + 1), with_start]) - np.eye(n, n + 1)
@@ -97,7 +97,7 @@ class Curve:
 
     def unlike(self, speeds: np.ndarray) -> np.ndarray:
         """How far an orbit is from a shorter one that is run through several times; 1 if it cannot be."""
-        parts, k = math.gcd(self.like.period, self.like.impacts), self.like.impacts
+        parts, k = math.gcd(self.like.m, self.like.impacts), self.like.impacts
         shifts = [speeds - np.roll(speeds, k // q) for q in (2, 3, 5) if parts % q == 0]
         return min(shifts, key=np.linalg.norm, default=speeds) / speeds.max()
 
@@ -145,11 +145,11 @@ def nearest_graze(orbit: PeriodicOrbit) -> float:
     oscillator, heights = orbit.oscillator, [math.inf]
     if orbit.approach.min() < math.sqrt(PLACE) * oscillator.unit_speed:
         return 0.0
-    motion, gap, state = oscillator.motion(), oscillator.stop.gap, orbit.state()
+    numbers, gap, state = oscillator.numbers(), oscillator.stop.gap, orbit.state()
     log = orbit.record.log
     ends = np.append(log["start"][1:], orbit.duration)
     for low, high, end, after in zip(log["start"], log["end"], ends, orbit.record.states[:, 1], strict=True):
-        tip = Signal(motion, float(orbit.phase + high), *after)
+        tip = Signal(numbers, float(orbit.phase + high), *after)
         length = float(end - high)
         heights += list(tip(tip.peaks(length + 0.1 * oscillator.period)) / gap - 1.0)
         heights.append(float(np.min(tip(tip.samples(length)))) / gap - 1.0)

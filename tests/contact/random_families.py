@@ -57,10 +57,10 @@ def random_family(rng: np.random.Generator) -> tuple[Shooting, PeriodicOrbit]:
         strobed = contact.StroboscopicMap(oscillator=oscillator)
         start = strobed.at(-1e-3).steady() if rng.random() < 0.5 else contact.State.rest(oscillator.n_modes)
         try:
-            found = orbits.settle(strobed, start, most_cycles=512, largest_period=16)
-            if not (1 <= found.period <= 5 and fewest <= found.impacts <= 4):
+            found = orbits.settle(strobed, start, most_cycles=512, largest_m=16)
+            if not (1 <= found.m <= 5 and fewest <= found.impacts <= 4):
                 continue
-            family = Shooting(oscillator=oscillator, period=found.period, impacts=found.impacts)
+            family = Shooting(oscillator=oscillator, m=found.m, impacts=found.impacts)
             return family, family.from_state(replace(found.end, time=0.0))
         except ContactError:
             continue
@@ -135,7 +135,7 @@ def judged_family(seed: int, number: int, names: Collection[str] = ALL) -> tuple
         for kind, sentence in judged(family, start, random_change(start.oscillator, rng), names):
             counts.update([kind, f"{kind}, wrong"] if sentence else [kind])
             if sentence:
-                orbit = f"p{family.period} with {family.impacts} touches, {law}"
+                orbit = f"p{family.m} with {family.impacts} touches, {law}"
                 wrong.append(f"family {number} of seed {seed} ({orbit}): {kind} {sentence}")
     return counts, wrong
 

@@ -77,7 +77,7 @@ def differences(orbit: PeriodicOrbit) -> tuple[np.ndarray, float]:
     strobed, scale = contact.StroboscopicMap(oscillator=oscillator), sizes(oscillator)
 
     def after(point: np.ndarray) -> np.ndarray:
-        end = strobed.orbit(contact.State(displacement=point[:n], velocity=point[n:]), orbit.period).end
+        end = strobed.orbit(contact.State(displacement=point[:n], velocity=point[n:]), orbit.m).end
         return np.concatenate([end.displacement, end.velocity])
 
     state = orbit.strobe_state()
@@ -90,6 +90,6 @@ def differences(orbit: PeriodicOrbit) -> tuple[np.ndarray, float]:
 
 def touches(orbit: PeriodicOrbit) -> int:
     """Touches of the simulated motion from just before the first one to just before it comes again."""
-    duration = orbit.period * orbit.oscillator.period * (1 - 1e-6)
+    duration = orbit.m * orbit.oscillator.period * (1 - 1e-6)
     run = contact.simulate(orbit.oscillator, orbit.state(), duration=duration)
     return int(np.count_nonzero(run.impacts.kind == 0))

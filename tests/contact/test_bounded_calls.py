@@ -34,7 +34,7 @@ CALLS = [entry for entry in (*CONTACT, *ORBITS) if entry.over]
 TWELVE = ("born", "fold_of", "orbit_end", "orbit_exponents")
 """Calls that the long form makes with twelve modes too: each of them once took ten seconds and more."""
 
-WITHOUT_A_LAW = {"band", "bands", "before_collision", "maximal_period", "maximal_periods"}
+WITHOUT_A_LAW = {"frequency_band", "before_collision", "maximal_m", "coexisting_m"}
 WITHOUT_A_LAW |= {"PeriodicOrbit.failure", "damping_ratio", "restitution_from_bounces"}
 """Closed forms of the letter's map and of flights, and a method that makes an error."""
 COMPUTING = ("KickFamily", "PeriodicOrbit", "Shooting", "StroboscopicMap")

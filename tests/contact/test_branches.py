@@ -27,7 +27,7 @@ def waits(frequency: float, name: str) -> ImpactOscillator:
 @pytest.mark.parametrize(("frequency", "period"), [(20.90, 3), (21.50, 4), (22.20, 5)])
 def test_the_error_of_kicks_grows_with_the_speed(ratio: float | None, frequency: float, period: int) -> None:
     oscillator = beam(frequency, HERTZ, ratio=ratio)
-    family = orbits.Shooting(oscillator=oscillator, period=period)
+    family = orbits.Shooting(oscillator=oscillator, m=period)
     kicks, unit = family.kicks, oscillator.unit_speed
     errors = []
     for part in (0.05, 0.1, 0.3):
@@ -45,7 +45,7 @@ SCANS += slow((waits(20.90, "falling"), 3, 1e-8), (waits(22.20, "constant"), 5, 
 @pytest.mark.parametrize(("oscillator", "period", "digits"), SCANS)
 def test_folds_against_a_downward_scan(oscillator: ImpactOscillator, period: int, digits: float) -> None:
     """And against the fold of the kicks, which are exact where one mode waits."""
-    family = orbits.Shooting(oscillator=oscillator, period=period)
+    family = orbits.Shooting(oscillator=oscillator, m=period)
     fold = orbits.fold_of(family)
     assert fold.admissible and apart(fold.multipliers[:1], np.ones(1)) < 1e-7
     node = family.at_speed(1.3 * fold.speed)
@@ -61,7 +61,7 @@ def test_folds_against_a_downward_scan(oscillator: ImpactOscillator, period: int
 
 def test_an_end_by_period_doubling_is_named_and_exact() -> None:
     """p1 of a hard wall of restitution 0.7: the scan downwards ends where a multiplier passes -1."""
-    family, unit = orbits.Shooting(oscillator=HARD, period=1), HARD.unit_speed
+    family, unit = orbits.Shooting(oscillator=HARD, m=1), HARD.unit_speed
     branch = orbits.follow(family, family.at_speed(1.0 * unit), low=0.5 * unit, high=1.5 * unit)
     (doubled,) = branch.of_kind("period doubling")
     start = family.at_speed(1.1 * doubled.speed, doubled)
@@ -75,7 +75,7 @@ def test_an_orbit_doubles_its_period_before_a_hard_touch_is_lost() -> None:
     """Eq. (1), 20.90 Hz: p3 has a second touch above 0.0891 and would lose it there on the way down, but next
     to the graze its derivative has no bound, and it doubles its period just before."""
     oscillator = equation_1(20.90)
-    single = orbits.Shooting(oscillator=oscillator, period=3)
+    single = orbits.Shooting(oscillator=oscillator, m=3)
     (graze,) = orbits.follow(single, single.at_speed(100.0), low=90.0, high=140.0).of_kind("grazing")
     strobed = StroboscopicMap(oscillator=oscillator)
     end = orbits.orbit_end(strobed, settled(oscillator, 0.1).end, 0.1, most_cycles=4000)
@@ -94,8 +94,8 @@ def test_no_bracket_closes_because_a_long_step_fell_off(first_step: float, relat
             (nordmark, nordmark.excess(contact.MapFamily(nordmark, period).fold().rho)),
         ):
             steps = dict(relative=relative, first_step=first_step)
-            end = orbits.orbit_end(strobed, orbits.born(strobed).end, 1e-3, most_cycles=1000, **steps)
-            assert (end.period, end.impacts, end.kind) == (period, 1, "fold")
+            end = orbits.orbit_end(strobed, orbits.onset_orbit(strobed).end, 1e-3, most_cycles=1000, **steps)
+            assert (end.m, end.impacts, end.kind) == (period, 1, "fold")
             assert end.lost <= exact <= end.held
             assert end.held - end.lost <= 1.0001 * max(relative * abs(end.held), 1e-7)
             assert end.excess == pytest.approx(exact, rel=2e-10)
@@ -124,14 +124,14 @@ def test_an_end_that_nothing_can_make_exact_is_a_bracket() -> None:
             return contact.StrobedOrbit(end=state, points=points, impacts=np.ones(count, dtype=int))
 
     end = orbits.orbit_end(Square(0.0), -0.4, 0.3, most_cycles=20_000, absolute=1e-2)
-    assert (end.period, end.kind) == (1, "bracket")
+    assert (end.m, end.kind) == (1, "bracket")
     assert end.lost < 0.0 < end.held and end.held - end.lost < 1.01e-2
 
 
 def test_one_mode_of_the_kick_is_not_the_whole_of_it() -> None:
     """With modes that ring on, the letter's two parameters are off where the kick of all modes is not."""
     oscillator = beam(20.90, HERTZ, ratio=1e-3)
-    family, speed = orbits.Shooting(oscillator=oscillator, period=3), 0.1 * oscillator.unit_speed
+    family, speed = orbits.Shooting(oscillator=oscillator, m=3), 0.1 * oscillator.unit_speed
     exact = family.at_speed(speed).excess
     kicks, mask = family.kicks, np.eye(oscillator.n_modes)[:1].T
     first = replace(kicks, collision=lambda v: replace(kicks.kick(v), jump=mask * kicks.kick(v).jump))
@@ -140,17 +140,17 @@ def test_one_mode_of_the_kick_is_not_the_whole_of_it() -> None:
 
 
 def test_a_narrow_range_or_a_wrong_band_has_no_kick_fold() -> None:
-    kicks = orbits.KickFamily(oscillator=equation_1(20.90), period=3)
+    kicks = orbits.KickFamily(oscillator=equation_1(20.90), m=3)
     at = kicks.fold().kick.speed / kicks.oscillator.unit_speed
     assert kicks.fold(speeds=(1.5 * at, 1.0)) is None
     assert kicks.fold(speeds=(1e-4, 0.7 * at)) is None
-    other = orbits.KickFamily(oscillator=equation_1(20.90), period=1)
+    other = orbits.KickFamily(oscillator=equation_1(20.90), m=1)
     assert other.fold() is None
 
 
 @pytest.mark.parametrize("oscillator, period, middle", [(HARD, 1, 1.0), (waits(22.20, "constant"), 4, 0.37)])
 def test_a_doubling_of_the_period_is_seen_by_the_simulation(oscillator, period, middle):
-    family, unit = orbits.Shooting(oscillator=oscillator, period=period), oscillator.unit_speed
+    family, unit = orbits.Shooting(oscillator=oscillator, m=period), oscillator.unit_speed
     low, high = 0.8 * middle * unit, 1.2 * middle * unit
     branch = orbits.follow(family, family.at_speed(middle * unit), low=low, high=high)
     (doubled,) = branch.of_kind("period doubling")
@@ -171,7 +171,7 @@ def test_the_events_of_a_branch_of_the_beam() -> None:
     """Hertz: next to grazing the orbit of period m touches at every period, and has a fold of its own
     there."""
     oscillator = beam(22.20, HERTZ)
-    family, unit = orbits.Shooting(oscillator=oscillator, period=5), oscillator.unit_speed
+    family, unit = orbits.Shooting(oscillator=oscillator, m=5), oscillator.unit_speed
     branch = orbits.follow(family, family.at_speed(0.1 * unit), low=1e-5 * unit, high=1.5 * unit)
     speeds = [orbit.speed for orbit in branch.orbits]
     assert speeds == sorted(speeds)
@@ -190,14 +190,14 @@ def test_a_branch_that_loses_a_touch_ends_with_its_last_good_orbit() -> None:
     elsewhere."""
     oscillator = equation_1(20.90)
     run = settled(oscillator, 0.1)
-    family = orbits.Shooting(oscillator=oscillator.with_excess(0.1), period=3, impacts=2)
+    family = orbits.Shooting(oscillator=oscillator.with_excess(0.1), m=3, impacts=2)
     start = family.from_state(run.end)
     branch = orbits.follow(family, start, low=0.9 * start.speed, high=2.0 * start.speed)
     assert branch.ended_low == "range" and "one of 2 touches is a graze" in branch.ended_high
     last = branch.orbits[-1]
     assert last.residual < 1e-9 and last.approach[1] < 5e-3 * last.approach[0]
     # there the orbit of one impact has its grazing
-    single = orbits.Shooting(oscillator=oscillator, period=3)
+    single = orbits.Shooting(oscillator=oscillator, m=3)
     (graze,) = orbits.follow(single, single.at_speed(100.0), low=90.0, high=140.0).of_kind("grazing")
     assert last.speed == pytest.approx(graze.speed, rel=1e-5)
     assert last.excess == pytest.approx(graze.excess, rel=1e-5)
@@ -208,12 +208,12 @@ def test_a_branch_that_loses_a_touch_ends_with_its_last_good_orbit() -> None:
 def test_folds_along_frequency_are_those_of_each_frequency() -> None:
     oscillator = equation_1(21.40)
     frequencies = np.array([21.40, 21.45, 21.50])
-    found = orbits.fold_along_frequency(orbits.Shooting(oscillator=oscillator, period=4), frequencies)
+    found = orbits.fold_along_frequency(orbits.Shooting(oscillator=oscillator, m=4), frequencies)
     for frequency, orbit in zip(frequencies, found, strict=True):
-        closed = contact.MaximalFamily.from_oscillator(equation_1(frequency), period=4).fold()
+        closed = contact.MaximalFamily.from_oscillator(equation_1(frequency), m=4).fold()
         assert orbit.excess == pytest.approx(closed.excess, abs=1e-13)
         assert orbit.oscillator.drive.frequency == frequency
-    other = orbits.Shooting(oscillator=oscillator, period=1)
+    other = orbits.Shooting(oscillator=oscillator, m=1)
     with pytest.raises(contact.BranchEnded, match="period doubling") as caught:
         orbits.fold_of(other)
     (why,) = orbits.fold_along_frequency(other, np.array([oscillator.drive.frequency]))
@@ -226,10 +226,10 @@ def test_an_orbit_that_ends_by_a_torus_has_no_fold_and_says_so() -> None:
     the unit circle."""
     oscillator = on_stop(steel_leaf(), 12.21, gap=0.0085).with_excess(1e-3)
     strobed = StroboscopicMap(oscillator=oscillator)
-    orbit = orbits.born(strobed, 1e-3)
-    assert (orbit.period, orbit.impacts) == (3, 1)
+    orbit = orbits.onset_orbit(strobed, 1e-3)
+    assert (orbit.m, orbit.impacts) == (3, 1)
     with pytest.raises(contact.BranchEnded, match="torus") as caught:
-        orbits.fold_of(orbits.Shooting(oscillator=oscillator, period=3))
+        orbits.fold_of(orbits.Shooting(oscillator=oscillator, m=3))
     end = orbits.orbit_end(strobed, orbit.end, 1e-3, most_cycles=2000)
     assert end.kind == "torus" and end.lost < end.excess < end.held
     assert caught.value.orbit.excess == pytest.approx(end.excess, rel=1e-9)
@@ -237,7 +237,7 @@ def test_an_orbit_that_ends_by_a_torus_has_no_fold_and_says_so() -> None:
 
 
 def test_a_bound_that_is_used_up_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
-    family = orbits.Shooting(oscillator=equation_1(20.90), period=3)
+    family = orbits.Shooting(oscillator=equation_1(20.90), m=3)
     start, unit = family.at_speed(10.0), family.oscillator.unit_speed
     monkeypatch.setattr("contact.orbits.branches.branch.MOST_STEPS", 3)
     cut = orbits.follow(family, start, low=1e-3 * unit, high=1.5 * unit)
@@ -253,7 +253,7 @@ def test_where_the_approach_velocity_turns_round_a_fold_is_one() -> None:
     """One mode under Hertz's law, two touches: an independent search puts the fold at -0.3838."""
     hertz = HertzContact(stiffness=1e7)
     oscillator = modes_on_stop(150.0, 6.0, 1.0, 1.0, law=hertz, drive=14.0).with_excess(0.1)
-    family = orbits.Shooting(oscillator=oscillator, period=1, impacts=2)
+    family = orbits.Shooting(oscillator=oscillator, m=1, impacts=2)
     start = family.from_state(replace(settled(oscillator, 0.1).end, time=0.0))
     for found in (orbits.fold_of(family, start), orbits.first_event(family, start, -0.9).orbit):
         assert found.excess == pytest.approx(-0.3838388673, abs=1e-9) and found.admissible
@@ -264,7 +264,7 @@ def test_orbits_run_twice_cross_at_a_branch_point() -> None:
     """p1 under a linear contact doubles its period at 0.0929: p2 ends there, and p1 run twice passes."""
     linear = LinearContact(stiffness=1e6)
     oscillator = modes_on_stop(150.0, 6.0, 1.0, 1.0, law=linear, drive=22.0).with_excess(0.1)
-    single, double = (orbits.Shooting(oscillator=oscillator, period=m, impacts=m) for m in (1, 2))
+    single, double = (orbits.Shooting(oscillator=oscillator, m=m, impacts=m) for m in (1, 2))
     near, unit = single.at_speed(0.3 * oscillator.unit_speed), oscillator.unit_speed
     doubling = orbits.follow(single, near, low=1e-2 * unit, high=unit).of_kind("period doubling")[0].excess
     apart = double.from_state(replace(settled(oscillator, 0.1).end, time=0.0))

@@ -9,9 +9,17 @@ from oscillators import GAP, PHI, equation_1, modes_on_stop, newton, spring
 from scipy.signal import lfilter
 from simulated_orbit import beam
 
-from contact import Chatter, NewtonRestitution, NordmarkMap, NotPeriodic, State, StroboscopicMap, band
+from contact import (
+    Chatter,
+    NewtonRestitution,
+    NordmarkMap,
+    NotPeriodic,
+    State,
+    StroboscopicMap,
+    frequency_band,
+)
 from contact.maps.nordmark_orbits import MapFamily
-from contact.orbits import MaximalFamily, PeriodicOrbit, Shooting, cloud, orbit_exponents
+from contact.orbits import MaximalFamily, PeriodicOrbit, Shooting, orbit_exponents, strobe_covariance
 
 NEWTON = newton(0.1)
 PERIOD, SIGMA = 3, 1e-7
@@ -19,7 +27,7 @@ PERIOD, SIGMA = 3, 1e-7
 
 def node(oscillator: object, faster: float = 2.0) -> tuple[PeriodicOrbit, float]:
     """p3 beside its fold, and the excess of the fold."""
-    family = Shooting(oscillator=oscillator, period=PERIOD)
+    family = Shooting(oscillator=oscillator, m=PERIOD)
     fold = family.fold()
     return family.at_speed(faster * fold.speed, fold), fold.excess
 
@@ -82,7 +90,7 @@ def test_covariances_are_those_of_simulated_clouds(name: str, memory: float) -> 
     """Means over 100 blocks, each far longer than the noise remembers, have a standard error of their own."""
     strobed, state, _ = settled(name)
     sigma, cycles, blocks = 1e-10 if name == "map" else SIGMA, 20_000, 100
-    predicted = cloud(strobed, state, PERIOD, deviation=sigma, memory=memory)
+    predicted = strobe_covariance(strobed, state, PERIOD, deviation=sigma, memory=memory)
     factors = noise(PERIOD * cycles, sigma, memory)
     points = strobed.orbit(state, factors.size, factors=factors).points.reshape(cycles, PERIOD, -1)
     away = (points - strobed.orbit(state, PERIOD).points)[cycles // 20 :, :, :4]
@@ -95,23 +103,23 @@ def test_covariances_are_those_of_simulated_clouds(name: str, memory: float) -> 
 
 
 def test_clouds_grow_as_the_inverse_root_of_the_distance_to_the_fold() -> None:
-    family = Shooting(oscillator=equation_1(20.9, NEWTON), period=PERIOD)
+    family = Shooting(oscillator=equation_1(20.9, NEWTON), m=PERIOD)
     fold, sizes = family.fold(), []
     distances = np.array([1e-4, 1e-5, 1e-6]) * abs(fold.excess)
     for distance in distances:
         near = family.at_speed(fold.speed * (1.0 + 2.0 * np.sqrt(distance / abs(fold.excess))), fold)
         orbit = family.at_excess(fold.excess + distance, near)
         strobed = StroboscopicMap(oscillator=orbit.oscillator)
-        found = cloud(strobed, replace(orbit.strobe_state(), time=0.0), PERIOD, deviation=1.0)
+        found = strobe_covariance(strobed, replace(orbit.strobe_state(), time=0.0), PERIOD, deviation=1.0)
         sizes.append(np.trace(found[0]))
     slopes = np.diff(np.log(sizes)) / np.diff(np.log(distances))
     assert slopes == pytest.approx([-0.5, -0.5], abs=0.01)
     saddle = family.at_speed(0.9 * fold.speed, fold)
     with pytest.raises(NotPeriodic, match="unstable"):
         state = replace(saddle.strobe_state(), time=0.0)
-        cloud(StroboscopicMap(oscillator=saddle.oscillator), state, PERIOD, deviation=1.0)
+        strobe_covariance(StroboscopicMap(oscillator=saddle.oscillator), state, PERIOD, deviation=1.0)
     off = strobed, state, PERIOD  # a state of another amplitude
-    for refused in (lambda: cloud(*off, deviation=1.0), lambda: orbit_exponents(*off)):
+    for refused in (lambda: strobe_covariance(*off, deviation=1.0), lambda: orbit_exponents(*off)):
         with pytest.raises(NotPeriodic, match="scale"):
             refused()
 
@@ -120,7 +128,7 @@ def test_clouds_grow_as_the_inverse_root_of_the_distance_to_the_fold() -> None:
 def test_clouds_grow_towards_grazing_as_the_inverse_root_of_the_excess(name: str) -> None:
     """At the upper edge of a band, where the orbit shrinks with the excess; in noise of a thirtieth of the
     excess as the root of the noise (Simpson, Hogan and Kuske, arXiv:1207.2703)."""
-    edge = band(PERIOD, free_period=40.80e-3, decay_rate=3.56, restitution=0.1).upper
+    edge = frequency_band(PERIOD, free_period=40.80e-3, decay_rate=3.56, restitution=0.1).upper
     excesses, weak, clear = np.array([1e-3, 1e-4, 1e-5]), [], []
     for excess in excesses:
         oscillator = equation_1(edge, NEWTON, excess=excess)
@@ -130,7 +138,7 @@ def test_clouds_grow_towards_grazing_as_the_inverse_root_of_the_excess(name: str
             state = next(each for each in family.orbits(excess) if each.stable).states[0]
         else:
             strobed = StroboscopicMap(oscillator=oscillator)
-            orbits = MaximalFamily(oscillator=oscillator, period=PERIOD).orbits(excess)
+            orbits = MaximalFamily(oscillator=oscillator, m=PERIOD).orbits(excess)
             state = next(each for each in orbits if each.stable and each.admissible).strobe_state()
         for sigma, found in ((1e-3 * excess, weak), (excess / 30.0, clear)):
             run = strobed.orbit(state, 99_999, factors=noise(99_999, sigma, 0.0))
@@ -143,9 +151,9 @@ def test_clouds_grow_towards_grazing_as_the_inverse_root_of_the_excess(name: str
 def test_slow_drift_is_a_slow_change_of_amplitude() -> None:
     """With a memory near one the cloud is the orbit's own change with the amplitude, times sigma."""
     orbit, _ = node(equation_1(20.9, NEWTON))
-    family = Shooting(oscillator=orbit.oscillator, period=PERIOD)
+    family = Shooting(oscillator=orbit.oscillator, m=PERIOD)
     strobed, state = StroboscopicMap(oscillator=orbit.oscillator), replace(orbit.strobe_state(), time=0.0)
-    found = cloud(strobed, state, PERIOD, deviation=1.0, memory=1.0 - 1e-9)
+    found = strobe_covariance(strobed, state, PERIOD, deviation=1.0, memory=1.0 - 1e-9)
     ends = [family.at_excess((1.0 + orbit.excess) * (1.0 + h) - 1.0, orbit) for h in (1e-6, -1e-6)]
     moved = [
         StroboscopicMap(oscillator=end.oscillator).orbit(replace(end.strobe_state(), time=0.0), PERIOD).points

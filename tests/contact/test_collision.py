@@ -181,7 +181,7 @@ def test_mode_1_is_the_one_that_moves_the_tip_most() -> None:
         pairs = [(model.free_period, other.free_period)]
         pairs.append((NordmarkMap.from_oscillator(first).alpha, NordmarkMap.from_oscillator(second).alpha))
         speed = 0.1 * first.unit_speed
-        pairs.append(tuple(KickFamily(oscillator=o, period=3).orbit(speed).excess for o in (first, second)))
+        pairs.append(tuple(KickFamily(oscillator=o, m=3).orbit(speed).excess for o in (first, second)))
         hits = [first_collision(oscillator.with_excess(0.02)) for oscillator in (first, second)]
         pairs += [tuple(getattr(hit, name) for hit in hits) for name in ("kick", "restitution", "ringing")]
         for expected, found in pairs:

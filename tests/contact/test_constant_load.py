@@ -56,10 +56,10 @@ CALLS = {
     "factors": lambda o, rest: strobed(o).orbit(thrown(rest), 2, factors=[1.2, 0.9]).end.displacement - rest,
     "jacobians": lambda o, rest: strobed(o).jacobians(thrown(rest), 3)[0][-1][0],
     "settle": lambda o, rest: settled(strobed(o, -0.1)).displacement - rest,
-    "born": lambda o, rest: orbits.born(strobed(o), 1e-3, most_cycles=200).end.displacement - rest,
+    "born": lambda o, rest: orbits.onset_orbit(strobed(o), 1e-3, most_cycles=200).end.displacement - rest,
     "exponents": lambda o, rest: orbits.map_exponents(strobed(o), thrown(rest), 20)[0].values,
     "diagram": diagram,
-    "scan": lambda o, rest: orbits.AmplitudeScan(oscillator=o, most_cycles=128)(20.0, [-0.2, -0.1]).period,
+    "scan": lambda o, rest: orbits.AmplitudeScan(oscillator=o, most_cycles=128)(20.0, [-0.2, -0.1]).m,
 }
 FOLLOWED = {
     **{m.name: lambda o, rest, m=m: followed(o, rest, m) for m in METHODS},
@@ -68,11 +68,13 @@ FOLLOWED = {
     "no changes": lambda o, rest: orbits.motion_derivatives(o, thrown(rest), [], periods=2).strobes,
 }
 WITHOUT = {
-    "cloud": lambda o, rest: orbits.cloud(strobed(o, -0.1), strobed(o, -0.1).steady(), 2, deviation=1e-3),
+    "cloud": lambda o, rest: orbits.strobe_covariance(
+        strobed(o, -0.1), strobed(o, -0.1).steady(), 2, deviation=1e-3
+    ),
     "derivatives": lambda o, rest: orbits.strobe_derivatives(strobed(o, -0.1), strobed(o, -0.1).steady(), 2),
     "fold": lambda o, rest: orbits.fold_excess(strobed(o), 3),
-    "kick": lambda o, rest: orbits.KickFamily(oscillator=o, period=1),
-    "shooting": lambda o, rest: orbits.Shooting(oscillator=o, period=1),
+    "kick": lambda o, rest: orbits.KickFamily(oscillator=o, m=1),
+    "shooting": lambda o, rest: orbits.Shooting(oscillator=o, m=1),
     "changes": lambda o, rest: orbits.motion_derivatives(o, thrown(rest), [GAP], periods=1),
 }
 

@@ -26,10 +26,10 @@ def test_a_motion_settles_on_its_orbit_though_the_strobe_falls_into_the_wait(fre
     strobed = contact.StroboscopicMap(oscillator=equation_1(frequency, law)).at(0.3)
     fast = contact.State(displacement=np.zeros(1), velocity=np.array([2.0]))
     settled = settle(strobed, fast, most_cycles=4000)
-    assert settled.period > 1 and settled.impacts == 1
-    family = Shooting(oscillator=strobed.oscillator, period=settled.period)
+    assert settled.m > 1 and settled.impacts == 1
+    family = Shooting(oscillator=strobed.oscillator, m=settled.m)
     state = settled.end
-    for _ in range(settled.period):
+    for _ in range(settled.m):
         if state.regime == 4:
             break
         state = strobed.orbit(state, 1).end
@@ -58,14 +58,14 @@ def test_the_fold_shifts_by_the_maps_part_of_the_hysteresis_at_a_band_edge(perio
     X is sqrt(x_0) at the fold without delay.  The map's hysteresis there is that of Eq. (1) times
     (1 - tau g)^2/((1 + tau^2 g)(1 + g)), g = gamma^(m/2), and so is the shift: their ratio is right.
     """
-    edge = contact.band(period, free_period=T, decay_rate=MU, restitution=TAU).upper
+    edge = contact.frequency_band(period, free_period=T, decay_rate=MU, restitution=TAU).upper
     wrong = []
     for below in (1e-3, 1e-4):
         frequency = edge * (1.0 - below)
-        free = contact.MaximalFamily.from_oscillator(equation_1(frequency), period=period).fold()
+        free = contact.MaximalFamily.from_oscillator(equation_1(frequency), m=period).fold()
         delay = 1e-3 * free.speed / ((2.0 * math.pi * frequency) ** 2 * GAP)
         law = contact.DelayedRestitution(restitution=TAU, delay=delay)
-        fold = KickFamily(oscillator=equation_1(frequency, law), period=period).fold(speeds=(1e-7, 1.0))
+        fold = KickFamily(oscillator=equation_1(frequency, law), m=period).fold(speeds=(1e-7, 1.0))
         nordmark = contact.NordmarkMap.from_oscillator(equation_1(frequency))
         share = map_shift(frequency, period, delay) / -MapFamily(nordmark, period).fold().rho
         wrong.append((fold.excess - free.excess) / -free.excess / share - 1.0)
@@ -77,7 +77,7 @@ def test_a_wait_longer_than_the_free_return_holds_the_tip_and_feeds_the_motion()
     frequency, delay = 23.40, 2e-3
     slow = 0.5 * (2.0 * math.pi * frequency) ** 2 * GAP * delay
     law = contact.DelayedRestitution(restitution=0.1, delay=delay)
-    family = Shooting(oscillator=equation_1(frequency, law), period=1)
+    family = Shooting(oscillator=equation_1(frequency, law), m=1)
     for part in (0.3, 0.6, 0.9):
         orbit = family.at_speed(part * slow)
         assert orbit.excess < -0.4 and orbit.stable and orbit.admissible and touches(orbit) == 1
@@ -90,10 +90,10 @@ def test_a_wait_longer_than_the_free_return_holds_the_tip_and_feeds_the_motion()
 
 def test_a_wait_of_all_periods_is_refused() -> None:
     law = contact.DelayedRestitution(restitution=0.1, delay=3.0 / 20.9)
-    kicks = KickFamily(oscillator=equation_1(20.90, law), period=3)
+    kicks = KickFamily(oscillator=equation_1(20.90, law), m=3)
     with pytest.raises(contact.NotPeriodic, match="period 3"):
         kicks.orbit(0.1)
-    assert KickFamily(oscillator=equation_1(20.90, law), period=4).orbit(0.1).kick.duration == law.delay
+    assert KickFamily(oscillator=equation_1(20.90, law), m=4).orbit(0.1).kick.duration == law.delay
 
 
 def test_an_error_with_an_orbit_whose_law_has_functions_leaves_its_process() -> None:

@@ -15,7 +15,7 @@ from simulated_orbit import DELAYED, EQUATION_1, LAWS, beam, on_stop
 import contact
 from beam import ModalChange
 from contact import orbits
-from contact.flight.motion import motion_of
+from contact.flight.numbers import numbers_of
 from contact.flight.variation import flow_derivative
 from contact.orbits import Change, Shooting, fold_of
 
@@ -58,7 +58,7 @@ def exact_slopes(of: Callable[[list], list[mp.mpf]], point: Sequence[float]) -> 
 def test_flow_of_a_mode_against_differentiation_in_50_digits(name: str) -> None:
     modes = MODES.get(name, {"omega": [600.0], "decay_rate": [1200.0 - 1e-7]})
     law, rates = newton(0.0), modes["decay_rate"]
-    table = motion_of(modes["omega"], rates, np.ones(len(rates)), law=law, gap=1.0).modes
+    table = numbers_of(modes["omega"], rates, np.ones(len(rates)), law=law, gap=1.0).modes
     for k, (omega, decay) in enumerate(zip(modes["omega"], rates, strict=True)):
         unit = max(1.0, omega) ** np.array([1, 0, 1, 1])
         for t in (1e-5, 3e-3, 0.2):
@@ -112,8 +112,8 @@ def exact_orbit(m: int) -> Callable[[Sequence[float]], list[mp.mpf]]:
 @pytest.mark.parametrize(("frequency", "m", "excess"), [(22.2, 5, 4e-3), (20.9, 3, -5e-4), (23.4, 11, 1e-3)])
 def test_orbit_of_equation_1_against_its_closed_form_in_50_digits(frequency, m, excess):
     oscillator = equation_1(frequency, newton(TAU), gap=GAP)
-    node = contact.MaximalFamily(oscillator=oscillator, period=m).orbits(excess)[-1]
-    family = Shooting(oscillator=oscillator, period=m)
+    node = contact.MaximalFamily(oscillator=oscillator, m=m).orbits(excess)[-1]
+    family = Shooting(oscillator=oscillator, m=m)
     orbit = family.at_excess(excess, family.at_speed(node.speed))
     changes = of_equation_1(frequency)
     found = orbits.orbit_derivatives(orbit, changes)
@@ -161,7 +161,7 @@ def test_folds_under_newtons_law_move_as_their_closed_form_does(name: str) -> No
 
     changes = [unit(array, k) for array in ARRAYS for k in range(n)]
     changes += [Change(law=(1.0, 0.0)), Change(frequency=1.0), Change(gap=1.0), Change(amplitude=1.0)]
-    fold = fold_of(Shooting(oscillator=oscillator, period=m))
+    fold = fold_of(Shooting(oscillator=oscillator, m=m))
     found = orbits.excess_derivatives(fold, changes)
     with mp.workdps(50):
         point = np.array([*model.omega, *model.decay_rate, *model.phi, tau, f])
@@ -209,7 +209,7 @@ def test_other_units_change_nothing_but_units(name: str) -> None:
     These are sums of derivatives by every number that cancel; rounding is measured by the sizes of its parts.
     """
     oscillator = equation_1(22.2, DELAYED[name], gap=GAP) if name in DELAYED else beam(22.20, LAWS[name], 10)
-    orbit = Shooting(oscillator=oscillator, period=5).at_speed(0.1 * oscillator.unit_speed)
+    orbit = Shooting(oscillator=oscillator, m=5).at_speed(0.1 * oscillator.unit_speed)
     found = orbits.orbit_derivatives(orbit, in_other_units(orbit.oscillator))
     parts = orbits.orbit_derivatives(orbit, every_number(orbit.oscillator))
     n = oscillator.n_modes
@@ -263,7 +263,7 @@ def test_a_simulated_motion_against_differences(name: str) -> None:
 
 def test_orbits_and_folds_of_the_letters_spring_under_hertz_against_differences() -> None:
     oscillator = beam(22.20, LAWS["hertz"], modes=10)
-    family, rng = Shooting(oscillator=oscillator, period=5), np.random.default_rng(3)
+    family, rng = Shooting(oscillator=oscillator, m=5), np.random.default_rng(3)
     fold = fold_of(family)
     orbit = family.at_speed(1.5 * fold.speed, fold)
     change = random_change(orbit.oscillator, rng)
@@ -272,7 +272,7 @@ def test_orbits_and_folds_of_the_letters_spring_under_hertz_against_differences(
 
     def observed(step: float) -> list:
         moved = change.applied(orbit.oscillator, step)
-        near, beside = Shooting(oscillator=moved, period=5), moved.excess
+        near, beside = Shooting(oscillator=moved, m=5), moved.excess
         there = near.at_excess(beside, orbit)
         return [there.phase, there.speed, fold_of(near, fold).excess]
 
@@ -283,8 +283,8 @@ def test_orbits_and_folds_of_the_letters_spring_under_hertz_against_differences(
 
 def test_where_there_is_no_derivative_a_sentence_says_so() -> None:
     oscillator = equation_1(22.2, gap=GAP)
-    family = Shooting(oscillator=oscillator, period=5)
-    exact = contact.MaximalFamily(oscillator=oscillator, period=5).fold()
+    family = Shooting(oscillator=oscillator, m=5)
+    exact = contact.MaximalFamily(oscillator=oscillator, m=5).fold()
     with pytest.raises(contact.NoDerivative, match="fold"):
         orbits.orbit_derivatives(family.at_speed(exact.speed), of_equation_1(22.2))
     grazing = oscillator.with_excess(0.0)

@@ -22,10 +22,10 @@ PLACES = [(20.90, 3), (21.50, 4), (22.20, 5), (23.40, 11)]
 one_mode = partial(equation_1, gap=0.0107)
 
 MAKERS = {
-    "closed form": lambda at, period: contact.MaximalFamily.from_oscillator(at, period=period),
-    "kicks": lambda at, period: KickFamily(oscillator=at, period=period),
-    "shooting": lambda at, period: Shooting(oscillator=at, period=period),
-    "map": lambda at, period: contact.MapFamily(contact.NordmarkMap.from_oscillator(at), period),
+    "closed form": lambda at, m: contact.MaximalFamily.from_oscillator(at, m=m),
+    "kicks": lambda at, m: KickFamily(oscillator=at, m=m),
+    "shooting": lambda at, m: Shooting(oscillator=at, m=m),
+    "map": lambda at, m: contact.MapFamily(contact.NordmarkMap.from_oscillator(at), m),
 }
 OSCILLATORS = {
     **{f"Newton, {f} Hz": (one_mode(f), m) for f, m in PLACES},
@@ -69,7 +69,7 @@ def test_an_orbit_has_the_speed_that_was_given(found: tuple[Family, Orbit]) -> N
     for part in (0.5, 1.0, 2.0):
         orbit = family.orbit(part * fold.speed)
         assert orbit.speed == pytest.approx(part * fold.speed, rel=1e-12)
-        assert orbit.period == family.period == fold.period
+        assert orbit.m == family.m == fold.m
 
 
 def test_the_fold_has_the_least_excess_and_a_multiplier_one(found: tuple[Family, Orbit]) -> None:
@@ -127,7 +127,7 @@ def test_where_several_descriptions_hold_they_are_one(name: str) -> None:
         wanted = closed.orbit(part * oscillator.unit_speed)
         for other in others:
             found = other.orbit(part * oscillator.unit_speed)
-            if isinstance(other, KickFamily) and found.kick.touches > 1:
+            if isinstance(other, KickFamily) and found.kick.impacts > 1:
                 continue  # the kick is that of the whole collision
             digits = 1e-15 / part + 1e-13
             assert found.excess == pytest.approx(wanted.excess, abs=digits)
@@ -147,7 +147,7 @@ def test_where_several_descriptions_hold_they_are_one(name: str) -> None:
 def test_an_orbit_is_one_of_the_simulated_motion(name: str) -> None:
     """It closes, has the multipliers of the simulated map, and is admissible if it touches once."""
     oscillator, period = OSCILLATORS[name]
-    family, seen = Shooting(oscillator=oscillator, period=period), []
+    family, seen = Shooting(oscillator=oscillator, m=period), []
     for part in (0.02, 0.1, 0.15, 0.3, 0.5, 1.5):
         orbit = family.orbit(part * oscillator.unit_speed)
         assert orbit.admissible == (touches(orbit) == 1)
@@ -170,8 +170,8 @@ SEVERAL += [(beam(21.50, HERTZ, modes=4), 0.02, 8, 3), (WAITS, 1e-4, 6, 2), (WAI
 @pytest.mark.parametrize(("oscillator", "excess", "period", "impacts"), SEVERAL)
 def test_orbits_with_several_touches(oscillator, excess, period, impacts):
     run = settled(oscillator, excess)
-    assert (run.period, run.impacts) == (period, impacts)
-    family = Shooting(oscillator=oscillator.with_excess(excess), period=period, impacts=impacts)
+    assert (run.m, run.impacts) == (period, impacts)
+    family = Shooting(oscillator=oscillator.with_excess(excess), m=period, impacts=impacts)
     orbit = family.from_state(run.end)
     assert orbit.excess == pytest.approx(excess, abs=1e-14)
     assert orbit.residual < 1e-12 and orbit.admissible and orbit.stable
@@ -187,6 +187,6 @@ def test_orbits_with_several_touches(oscillator, excess, period, impacts):
 def test_the_multipliers_of_a_kick_orbit_are_those_of_its_own_touch() -> None:
     """At the fold of the kicks of a soft wall the motion is all but at its own: a multiplier next to one."""
     at = one_mode(21.50, contact.HuntCrossley.with_restitution(stiffness=1e9, restitution=0.1, velocity=0.2))
-    kick, exact = (make(oscillator=at, period=4).fold() for make in (KickFamily, Shooting))
+    kick, exact = (make(oscillator=at, m=4).fold() for make in (KickFamily, Shooting))
     assert kick.excess == pytest.approx(exact.excess, rel=0.1)
     assert kick.multipliers[0] == pytest.approx(1.0, abs=0.05) and kick.admissible

@@ -28,7 +28,7 @@ def test_orbits_far_above_grazing_are_those_of_the_closed_form(w: float, gap: fl
     e, c = 0.8, 0.9 / math.tan(math.pi / w)
     roots = np.roots([c * c + ((1.0 - e) / (2.0 * w)) ** 2, 2.0 * gap * c, gap**2 - 1.0 / (1.0 - w * w) ** 2])
     oscillator = one_mode(w, gap, e)
-    found = Shooting(oscillator=oscillator, period=1).orbits(oscillator.excess)
+    found = Shooting(oscillator=oscillator, m=1).orbits(oscillator.excess)
     assert [orbit.speed for orbit in found] == pytest.approx([v for v in sorted(roots) if v > 0.0], rel=1e-10)
 
 
@@ -36,8 +36,8 @@ def test_orbits_far_above_grazing_are_those_of_the_closed_form(w: float, gap: fl
 def test_no_fold_is_missed(cells: list[tuple[int, float, float]]) -> None:
     count = 0
     for period, tau, part in cells:
-        family = Shooting(oscillator=equation_1(part / 0.0408, newton(tau)), period=period)
-        closed = MaximalFamily(oscillator=family.oscillator, period=period).fold()
+        family = Shooting(oscillator=equation_1(part / 0.0408, newton(tau)), m=period)
+        closed = MaximalFamily(oscillator=family.oscillator, m=period).fold()
         if closed is not None and closed.admissible:
             found, count = [fold_of(family)], count + 1
             found += whole_branch(family, None)[2].of_kind("fold") if len(cells) < 9 else []
@@ -47,8 +47,8 @@ def test_no_fold_is_missed(cells: list[tuple[int, float, float]]) -> None:
 
 def test_a_bound_of_the_speed_is_said_with_its_orbit() -> None:
     """Next to twice the natural frequency an almost elastic orbit folds beyond 200 times 2 pi f gap."""
-    far, usual = (Shooting(oscillator=one_mode(w, 0.1, e), period=1) for w, e in ((1.999, 0.999), (1.6, 0.5)))
-    assert MaximalFamily(oscillator=far.oscillator, period=1).fold().speed > 200 * far.oscillator.unit_speed
+    far, usual = (Shooting(oscillator=one_mode(w, 0.1, e), m=1) for w, e in ((1.999, 0.999), (1.6, 0.5)))
+    assert MaximalFamily(oscillator=far.oscillator, m=1).fold().speed > 200 * far.oscillator.unit_speed
     for family, excess, at in ((far, 0.0, 100.0), (usual, 1e6, 100.0), (usual, -1e-9, 1e-6)):
         with pytest.raises(BranchEnded) as caught:
             family.orbits(excess)
@@ -61,13 +61,13 @@ def test_a_scan_tries_its_lowest_amplitude(w: float, start: float) -> None:
     """A doubled step passes over both the end of the orbit and the lowest excess."""
     strobed = StroboscopicMap(oscillator=one_mode(w, 0.3, 0.8, 0.1).with_excess(start))
     on = settle(strobed, State(displacement=[0.0], velocity=[3.0]), most_cycles=20_000).end
-    fold = MaximalFamily(oscillator=strobed.oscillator, period=1).fold().excess
+    fold = MaximalFamily(oscillator=strobed.oscillator, m=1).fold().excess
     for lowest, kind in ((fold - 0.06, "fold"), (fold - 0.2, "fold"), (fold + 0.01, "")):
         end = orbit_end(strobed, on, start, most_cycles=20_000, lowest=lowest)
         assert (end is None) if not kind else end.kind == kind and abs(end.excess - fold) < 1e-9
 
 
 def test_without_an_orbit_to_start_from_the_branch_has_ended() -> None:
-    family = Shooting(oscillator=one_mode(1.2, 0.3, 0.8, 0.1), period=2, impacts=3)
+    family = Shooting(oscillator=one_mode(1.2, 0.3, 0.8, 0.1), m=2, impacts=3)
     with pytest.raises(BranchEnded, match="start from"):
         fold_of(family)

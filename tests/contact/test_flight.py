@@ -6,13 +6,13 @@ from dataclasses import replace
 import mpmath as mp
 import numpy as np
 import pytest
-from contact.flight.motion import COSINE, LOAD, OFFSET, SINE, Motion, damped_frequency, motion_of
 from oscillators import modes_on_stop, newton, spring
 
 from contact import ImpactOscillator, State, simulate
 from contact.flight import modal_flow
 from contact.flight.elementary import EPS, exponential, sine_cosine
 from contact.flight.modal_flow import flow_matrix, mode_acceleration, propagate
+from contact.flight.numbers import COSINE, LOAD, OFFSET, SINE, Numbers, damped_frequency, numbers_of
 from contact.flight.tip import tip_rounding, tip_state
 
 MODES = {  # omega [rad/s], c [1/s]
@@ -119,7 +119,7 @@ CASES = {"drive": DRIVEN, "drive and load": DRIVEN | LOADED, "load": LOADED, "ne
 def test_flight_of_many_modes_is_the_exponential_of_the_whole_system(name):
     """Under-, critically and over-damped modes and two of zero frequency, one of them without damping."""
     system = oscillator([150.0, 400.0, 900.0, 0.0, 0.0], [3.56, 800.0, 2500.0, 0.0, 25.0], **CASES[name])
-    motion, generator = system.motion(), np.random.default_rng(5)
+    motion, generator = system.numbers(), np.random.default_rng(5)
     for start, time in ((0.0, 1e-3), (0.01, 0.02), (0.04, 0.006), (0.0, 0.0465)):
         q, v = generator.normal(size=5) * 1e-3, generator.normal(size=5) * 0.1
         s, c = math.sin(motion.drive * start), math.cos(motion.drive * start)
@@ -149,7 +149,7 @@ def test_constant_load_on_a_free_body_with_drag(product):
     time = 0.25
     system = oscillator([0.0], [product / time], load=[9.81], phi=1.0)
     u, v = np.zeros(1), np.zeros(1)
-    propagate(system.motion(), u, v, time, u, v)
+    propagate(system.numbers(), u, v, time, u, v)
     with mp.workdps(60):
         c, t, g = mp.mpf(product / time), mp.mpf(time), mp.mpf(9.81)
         assert v[0] == pytest.approx(float(g * (1 - mp.exp(-c * t)) / c), rel=4 * EPS)
@@ -165,7 +165,7 @@ def test_rounding_bound_holds_and_is_not_idle(n_modes):
         omega = 150.0 * 10 ** np.sort(generator.uniform(0, 2, n_modes))
         decay = omega * 10 ** generator.uniform(-4, 0.6, n_modes)
         phi, participation = generator.normal(size=(2, n_modes))
-        motion = modes_on_stop(omega, decay, 7 * phi, participation, drive=(21.5, amplitude)).motion()
+        motion = modes_on_stop(omega, decay, 7 * phi, participation, drive=(21.5, amplitude)).numbers()
         u, v = generator.normal(size=n_modes) * free, generator.normal(size=n_modes) * free * omega
         start, bound = float(generator.uniform(0, 0.02)), tip_rounding(motion, u, v)
         later_u, later_v = np.empty(n_modes), np.empty(n_modes)
@@ -195,11 +195,11 @@ def test_numbers_at_another_amplitude_are_those_made_for_it(amplitude):
     """And none are left of a part that was replaced."""
     first = spring(3, newton(0.1), drive=(21.5, 1e-3))
     for other in (first, replace(first, drive=replace(first.drive, frequency=23.0)), first.with_excess(0.1)):
-        _ = other.motion()
-        found, drive, model = other.with_amplitude(amplitude).motion(), other.drive, other.model
+        _ = other.numbers()
+        found, drive, model = other.with_amplitude(amplitude).numbers(), other.drive, other.model
         numbers = dict(drive=drive.angular_frequency, period=drive.period, load=first.load)
         numbers |= dict(gap=first.stop.gap, response=amplitude * other.steady_response())
-        made = motion_of(model.omega, model.decay_rate, model.phi, law=first.stop.law, **numbers)
+        made = numbers_of(model.omega, model.decay_rate, model.phi, law=first.stop.law, **numbers)
         for name, value in made._asdict().items():
             assert getattr(found, name) == pytest.approx(value, rel=1e-13, abs=0.0), name
 
@@ -207,7 +207,7 @@ def test_numbers_at_another_amplitude_are_those_made_for_it(amplitude):
 def test_steady_motion_stays_steady():
     """Started on its steady motion the spring shows the same state at each of 2000 strobes, to rounding."""
     system = oscillator([150.0, 960.0], [3.56, 20.0], drive=(21.5, 1e-4))
-    motion = system.motion()
+    motion = system.numbers()
     start = State(displacement=motion.row(COSINE), velocity=motion.drive * motion.row(SINE))
     run = simulate(system, start, periods=2000)
     assert np.max(np.abs(run.strobe_displacement - motion.row(COSINE))) == 0.0
@@ -229,10 +229,10 @@ def test_a_free_flight_keeps_phase_and_energy_for_1e5_periods():
         assert abs(change.imag) < 10 * EPS * (n + 1) and abs(change.real) < 5 * EPS * (n + 1)
 
 
-def ladder(n: int, damping: float, load: float = 0.0) -> Motion:
+def ladder(n: int, damping: float, load: float = 0.0) -> Numbers:
     omega = 154.0 * (2.0 * np.arange(1.0, n + 1.0) - 1.0) ** 2
     omega[0] = 0.0 if load else omega[0]
-    return modes_on_stop(omega, damping * omega, drive=21.5, load=load * (omega == 0)).motion()
+    return modes_on_stop(omega, damping * omega, drive=21.5, load=load * (omega == 0)).numbers()
 
 
 @pytest.mark.parametrize("modes", [1, 7, 8, 20])

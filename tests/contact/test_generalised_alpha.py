@@ -137,7 +137,7 @@ def test_limits_known_in_closed_form() -> None:
         size = factor * largest
         assert bool(stable(method.numbers, np.array(size), np.array(2 * xi * size))) is good
     # in a lasting contact: the stiffness at which the highest frequency of the closed contact is 2/h
-    explicit, motion = GeneralisedAlpha.newmark(step=1.9 / OMEGA[2], beta=0.0), spring(3, SPRING).motion()
+    explicit, motion = GeneralisedAlpha.newmark(step=1.9 / OMEGA[2], beta=0.0), spring(3, SPRING).numbers()
     highest = stiffness_at(motion, (2 / explicit.step) ** 2)
     assert explicit.critical_stiffness(motion) == pytest.approx(highest, rel=1e-12)
 

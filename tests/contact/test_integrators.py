@@ -143,7 +143,7 @@ EXPLICIT["explicit Newmark"] = partial(GeneralisedAlpha.newmark, beta=0.0)
 def test_a_step_beyond_the_limit_is_refused(name: str) -> None:
     """Before the run for a linear contact; during it for Hertz's, whose stiffness grows with the depth."""
     method = EXPLICIT[name](step=1e-4)
-    limit = method.critical_stiffness(oscillator_with(contact.LinearContact(stiffness=1.0)).motion())
+    limit = method.critical_stiffness(oscillator_with(contact.LinearContact(stiffness=1.0)).numbers())
     for part, refused in ((0.99, False), (1.01, True)):
         linear = oscillator_with(contact.LinearContact(stiffness=part * limit))
         with pytest.raises(contact.StepTooLarge, match="stability") if refused else nullcontext():

@@ -127,9 +127,9 @@ def test_a_settled_orbit_has_the_multipliers_of_shooting(single, beam, excess):
     for strobed in (single, beam):
         here = strobed.at(excess)
         settled = settle(here, strobed.at(1e-3).steady(), most_cycles=3000)
-        period, impacts = settled.period, settled.impacts
+        period, impacts = settled.m, settled.impacts
         assert period in (4, 8)
-        shot = Shooting(oscillator=here.oscillator, period=period, impacts=impacts).from_state(settled.end)
+        shot = Shooting(oscillator=here.oscillator, m=period, impacts=impacts).from_state(settled.end)
         wanted = math.log(abs(shot.multipliers[0])) / period
         assert orbit_exponents(here, settled.end, period).largest == pytest.approx(wanted, abs=1e-7)
         assert divergence(here, settled.end, 150, align=20)[0] == pytest.approx(wanted, abs=3e-3)
@@ -138,7 +138,7 @@ def test_a_settled_orbit_has_the_multipliers_of_shooting(single, beam, excess):
 def test_chaos_has_one_exponent_by_both_routes_and_the_sum_of_the_determinants(single):
     here = single.at(0.034)
     settled = settle(here, single.steady(), most_cycles=1500)
-    assert settled.period == 0
+    assert settled.m == 0
     found, _end = map_exponents(here, settled.end, 500, align=20)
     flow, error = divergence(here, settled.end, 500, align=20)
     spread = math.hypot(found.error, error)

@@ -19,7 +19,8 @@ from beam import ModalModel, Point
 from contact import HarmonicDrive, ImpactKind, ImpactOscillator, State, Stop, Trajectory, simulate
 from contact.flight.crossing import GRAZE_TOLERANCE
 from contact.flight.elementary import EPS
-from contact.flight.modal_flow import steady_motion, tip_rounding
+from contact.flight.modal_flow import steady_motion
+from contact.flight.tip import tip_rounding
 from contact.laws import LinearContact
 
 PROBLEMS = {one["name"]: one for one in json.loads(Path(__file__).with_name("many_stops.json").read_text())}
@@ -122,7 +123,7 @@ def views(rng: np.random.Generator) -> tuple:
     numbers = [problem["omega"], problem["decay_rate"], problem["participation"]]
     seen, stops, drive = [], [], (oscillator.drive.frequency, oscillator.drive.amplitude)
     for stop, row in zip(oscillator.stops, rows, strict=True):
-        one = modes_on_stop(*numbers[:2], row.astype(float), numbers[2], drive=drive).motion()
+        one = modes_on_stop(*numbers[:2], row.astype(float), numbers[2], drive=drive).numbers()
         steady = steady_motion(one, time)
         flight = start.displacement - steady[0], start.velocity - steady[1]
         signal = Signal(one, time, *flight)

@@ -118,7 +118,7 @@ def test_a_new_law_is_one_file_one_line_and_one_export(form, tmp_path):
     (tmp_path / "contact/touch/cubic.py").write_text(LAW)
     table, exports = tmp_path / "contact/touch/__init__.py", tmp_path / "contact/__init__.py"
     text = table.read_text().replace("from contact.touch import ", "from contact.touch import cubic, ", 1)
-    table.write_text(text.replace("TOUCHES = {", "TOUCHES = {9: offered(cubic),", 1))
+    table.write_text(text.replace("LAWS = {", "LAWS = {9: offered(cubic),", 1))
     export = "\nfrom contact.touch.cubic import CubicContact\n\n__version"
     exports.write_text(exports.read_text().replace("\n__version", export, 1))
     environment = {k: v for k, v in os.environ.items() if k != "NUMBA_CACHE_DIR"}

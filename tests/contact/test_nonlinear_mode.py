@@ -9,7 +9,7 @@ from one_mode import FREQUENCIES, GAP, oscillator
 from scipy.integrate import solve_ivp
 
 from contact import Diverged, NonlinearMode, NotPeriodic, StroboscopicMap
-from contact.orbits import born, born_period
+from contact.orbits import onset_m, onset_orbit
 
 LEG = 0.13
 U, LEAF, LINEAR = (-1.715, 1.486), (36 / 35, 36 / 25), (0.0, 0.0)
@@ -49,8 +49,8 @@ def test_without_cubic_terms_it_is_eq_1(frequency: float) -> None:
     assert mode(LINEAR, 26.0).effective_period == pytest.approx(40.80e-3, rel=1e-12)  # above resonance
     drive = one.grazing[0] / one.numbers[4] ** 2  # the base's amplitude whose inertia pushes as much
     assert drive == pytest.approx(linear.grazing_amplitude(), rel=1e-12)
-    settled = [born(strobed, 0.01) for strobed in (one, StroboscopicMap(oscillator=linear))]
-    assert [run.period for run in settled] == 2 * [settled[0].period]
+    settled = [onset_orbit(strobed, 0.01) for strobed in (one, StroboscopicMap(oscillator=linear))]
+    assert [run.m for run in settled] == 2 * [settled[0].m]
     assert [run.impacts for run in settled] == 2 * [settled[0].impacts]
 
 
@@ -136,7 +136,7 @@ def test_effective_period_and_decay_rate(cubic: tuple[float, float], close: floa
 def test_the_u_loses_periods_that_the_leaf_keeps() -> None:
     """Born at 1e-3: Eq. (1), a leaf and the letter say 3, 4, 5, 6, 8 at the first five frequencies."""
     rows = ([mode(cubic, f, gap=10.7e-3) for f in FREQUENCIES[:5]] for cubic in (LINEAR, LEAF, U))
-    linear, leaf, u = ([born_period(one, 1e-3) for one in row] for row in rows)
+    linear, leaf, u = ([onset_m(one, 1e-3) for one in row] for row in rows)
     assert linear == leaf == [3, 4, 5, 6, 8]
     assert sum(a == b for a, b in zip(u, leaf, strict=True)) <= 1
 

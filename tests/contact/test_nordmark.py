@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from oscillators import modes_on_stop, newton
 
-from contact import MapFamily, NordmarkMap, band, maximal_period, maximal_periods
+from contact import MapFamily, NordmarkMap, coexisting_m, frequency_band, maximal_m
 
 T, MU, TAU = 0.0408, 3.56, 0.1
 TABLE = [(20.90, 3), (21.50, 4), (22.20, 5), (22.60, 6), (23.05, 8), (23.40, 11)]
@@ -61,7 +61,7 @@ def test_folds_by_fifty_digit_newton(frequency: float, period: int, y_line: str)
     """Iterate the branches themselves; the fold is where a multiplier of the chain of Jacobians is one."""
     made = letter_map(frequency, y_line=y_line, delay=3e-5)
     at_fold = MapFamily(made, period).fold()
-    assert at_fold.admissible and maximal_period(letter_map(frequency)) == period
+    assert at_fold.admissible and maximal_m(letter_map(frequency)) == period
     assert at_fold.trace == pytest.approx(1 + at_fold.determinant, abs=1e-12)
     with mp.workdps(50):
         gamma = mp.e ** (-mp.mpf(MU) / mp.mpf(frequency))
@@ -132,24 +132,24 @@ def test_a_second_impact_ends_the_stable_range(frequency: float, period: int, y_
 
 
 def test_band_edges() -> None:
-    found = [band(m, free_period=T, decay_rate=MU, restitution=TAU) for m in range(2, 13)]
+    found = [frequency_band(m, free_period=T, decay_rate=MU, restitution=TAU) for m in range(2, 13)]
     for entry in found:
-        m = entry.period
+        m = entry.m
         assert entry.upper == pytest.approx(2 * m / ((2 * m + 1) * T), rel=1e-14)
         made = letter_map(entry.upper * (1 - 1e-6))
         at_fold = MapFamily(made, m).fold()
-        assert at_fold is not None and -1e-5 < at_fold.rho < 0 and maximal_period(made) == m
+        assert at_fold is not None and -1e-5 < at_fold.rho < 0 and maximal_m(made) == m
         past = MapFamily(letter_map(entry.upper * (1 + 1e-6)), m).fold()
         assert past is None  # no hysteresis at the upper edge, no fold above it
     for below, entry in pairwise(found):
         assert entry.lower < below.upper < entry.upper  # neighbours overlap
         for side in (-1, 1):
             made = letter_map(entry.lower * (1 + side * 1e-6))
-            node = MapFamily(made, entry.period).at_rho(0.0)[-1]
+            node = MapFamily(made, entry.m).at_rho(0.0)[-1]
             assert node.admissible is (side > 0)
-            assert (entry.period in maximal_periods(made)) is (side > 0)
+            assert (entry.m in coexisting_m(made)) is (side > 0)
         middle = 0.5 * (entry.lower + below.upper)
-        assert maximal_periods(letter_map(middle)) == (below.period, entry.period)
+        assert coexisting_m(letter_map(middle)) == (below.m, entry.m)
 
 
 def test_period_ten_needs_another_period_or_frequency() -> None:
@@ -158,14 +158,14 @@ def test_period_ten_needs_another_period_or_frequency() -> None:
         for rate in (0.5, MU, 10.0):
             for tau in (0.0, 0.1, 0.9):
                 made = letter_map(23.40, free_period=period_of_spring, decay_rate=rate, restitution=tau)
-                assert maximal_period(made) == 11
-    assert maximal_period(letter_map(23.40, free_period=0.04070)) == 10
-    assert maximal_period(letter_map(23.342)) == 10 and maximal_period(letter_map(23.343)) == 11
+                assert maximal_m(made) == 11
+    assert maximal_m(letter_map(23.40, free_period=0.04070)) == 10
+    assert maximal_m(letter_map(23.342)) == 10 and maximal_m(letter_map(23.343)) == 11
 
 
 def test_overdamped_map_adds_periods_and_has_no_fold() -> None:
     made = NordmarkMap.from_mode(omega=60.0, decay_rate=200.0, drive_frequency=40.0, restitution=0.0)
-    assert made.alpha**2 > 4 * made.gamma and maximal_period(made) == 0 and maximal_periods(made) == ()
+    assert made.alpha**2 > 4 * made.gamma and maximal_m(made) == 0 and coexisting_m(made) == ()
     assert all(MapFamily(made, m).fold() is None for m in range(1, 8))
     assert all(MapFamily(made, m).at_rho(-1e-3) == () for m in range(1, 8))
     seen = []

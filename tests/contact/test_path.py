@@ -28,7 +28,7 @@ LAWS = {
 
 @pytest.mark.parametrize("name", ["newton", "delayed", *slow("beam with Hertz contact")])
 def test_a_path_in_amplitude_is_the_branch_in_approach_speed(name: str) -> None:
-    family = Shooting(oscillator=LAWS[name], period=3)
+    family = Shooting(oscillator=LAWS[name], m=3)
     fold = family.fold()
     node = family.at_speed(1.3 * fold.speed, fold)
     by_speed = follow(family, node, low=0.5 * fold.speed, high=8.0 * fold.speed)
@@ -59,7 +59,7 @@ def followed(w: float, touches: int, low: float, high: float, force: float = 1.0
     """From the motion that has settled at `w`."""
     path, rest = partial(two_masses, force=force), State(displacement=np.zeros(2), velocity=np.zeros(2))
     settled = replace(simulate(path(w), rest, periods=500).end, time=0.0)
-    start = Shooting(oscillator=path(w), period=1, impacts=touches).from_state(settled)
+    start = Shooting(oscillator=path(w), m=1, impacts=touches).from_state(settled)
     return follow_path(path, start, w, low=low, high=high, step=0.2)
 
 
@@ -79,7 +79,7 @@ def test_touches_are_gained_and_lost_along_the_curve(curve: Branch) -> None:
         more = max(a, b, key=lambda orbit: orbit.impacts)
         assert more.approach.min() < 1e-3 * more.approach.max()
     for orbit in curve.orbits[:: len(curve.orbits) // 40]:
-        run = simulate(orbit.oscillator, orbit.state(), periods=orbit.period)
+        run = simulate(orbit.oscillator, orbit.state(), periods=orbit.m)
         start = orbit.state()
         assert np.allclose(run.end.displacement, start.displacement, rtol=0.0, atol=1e-9)
         assert np.sum(run.impacts.start <= start.time + 0.999999 * orbit.duration) == orbit.impacts
@@ -148,7 +148,7 @@ def test_a_fold_in_frequency_is_one_in_amplitude() -> None:
     branch = followed(0.635, 1, 0.6, 0.8, force=0.1)
     fold = next(event for event in branch.events if event.kind == "fold")
     orbit = fold.orbit
-    family = Shooting(oscillator=two_masses(fold.parameter, 0.1), period=1)
+    family = Shooting(oscillator=two_masses(fold.parameter, 0.1), m=1)
     sides = [family.at_speed(orbit.speed * (1.0 + h), orbit).excess - orbit.excess for h in (-1e-3, 1e-3)]
     assert min(sides) > 1e-7 or max(sides) < -1e-7
     assert abs(orbit.slope) * orbit.speed < 1e-7
@@ -156,7 +156,7 @@ def test_a_fold_in_frequency_is_one_in_amplitude() -> None:
 
 
 def test_no_orbit_next_to_the_start() -> None:
-    family = Shooting(oscillator=LAWS["newton"], period=3)
+    family = Shooting(oscillator=LAWS["newton"], m=3)
     start = family.at_speed(1.3 * family.fold().speed)
     with pytest.raises(NotPeriodic, match="period 3"):
         follow_path(lambda f: equation_1(f, newton(0.9)), start, 22.0, low=21.0, high=23.0)
@@ -189,11 +189,11 @@ def test_the_reason_for_an_end_is_given() -> None:
         law, drive = LinearContact(stiffness=5.0), (w / (2.0 * np.pi), 0.6)
         return modes_on_stop(1.0, 0.02, 1.0, 1.0, law=law, gap=1.0, drive=drive)
 
-    family = Shooting(oscillator=driven(0.9), period=1)
+    family = Shooting(oscillator=driven(0.9), m=1)
     start = family.at_excess(driven(0.9).excess, family.at_speed(1.0))
     found = follow_path(driven, start, 0.9, low=0.88, high=1.1, step=0.3)
     assert "too fast" in found.ended_high and not found.of_kind("grazing")
-    family = Shooting(oscillator=LAWS["newton"], period=3)
+    family = Shooting(oscillator=LAWS["newton"], m=3)
     through = family.at_speed(20.0 * family.fold().speed)
     assert not through.admissible
     with pytest.raises(NotPeriodic, match="touches"):

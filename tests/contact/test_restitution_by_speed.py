@@ -47,7 +47,7 @@ def test_a_bouncing_ball_rebounds_as_its_speed_says_and_stays_at_last():
 def test_a_rebound_without_delay_is_the_same_motion():
     """200 periods of Eq. (1) from a stable orbit."""
     twin = contact.DelayedRestitution(restitution=falls, delay=0.0)
-    orbit = Shooting(oscillator=equation_1(22.2, BY_SPEED, gap=GAP), period=5).orbits(0.01)[-1]
+    orbit = Shooting(oscillator=equation_1(22.2, BY_SPEED, gap=GAP), m=5).orbits(0.01)[-1]
     stops = (Stop(gap=GAP, law=law) for law in (BY_SPEED, twin))
     runs = (simulate(replace(orbit.oscillator, stop=stop), orbit.state(), periods=200) for stop in stops)
     one, other = (run.impacts for run in runs)
@@ -63,10 +63,10 @@ def test_orbits_are_those_of_the_constant_at_their_speed_but_for_their_multiplie
     free = math.exp(-5.0 * oscillator.period * np.sum(oscillator.model.decay_rate))
 
     def excess(speed: float) -> float:
-        family = MaximalFamily.from_oscillator(oscillator, period=5, restitution=falls(speed))
+        family = MaximalFamily.from_oscillator(oscillator, m=5, restitution=falls(speed))
         return family.orbit(speed).excess
 
-    family, kicks = (kind(oscillator=oscillator, period=5) for kind in (Shooting, KickFamily))
+    family, kicks = (kind(oscillator=oscillator, m=5) for kind in (Shooting, KickFamily))
     for speed in (0.01, 0.1, 0.5):
         orbit, e = family.at_speed(speed), falls(speed)
         assert (orbit.excess, kicks.excess(speed)) == pytest.approx((excess(speed),) * 2, abs=1e-11)
@@ -77,7 +77,7 @@ def test_orbits_are_those_of_the_constant_at_their_speed_but_for_their_multiplie
     ends = fold_excess(contact.StroboscopicMap(oscillator=oscillator), 5), excess(fold.speed)
     assert ends == pytest.approx((fold.excess,) * 2, abs=1e-11)
     with pytest.raises(TypeError, match="constant restitution"):
-        MaximalFamily(oscillator=oscillator, period=5)
+        MaximalFamily(oscillator=oscillator, m=5)
 
 
 @pytest.mark.parametrize("given", [falls, [[0.0, 0.3, 3.0], [0.6, 0.5, 0.2]]])

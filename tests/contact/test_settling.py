@@ -7,7 +7,7 @@ from oscillators import equation_1
 from simulated_orbit import beam
 
 from contact import ImpactOscillator, StroboscopicMap
-from contact.orbits import Shooting, fold_of, period_of, settle
+from contact.orbits import Shooting, fold_of, repeats_after, settle
 
 SETTLE_CYCLES = 10_000
 """Drive periods that the letter waits for."""
@@ -32,8 +32,8 @@ def test_same_period_and_points_as_after_ten_thousand_cycles(name, frequency, ex
     found = settle(strobed, start, most_cycles=SETTLE_CYCLES)
     waited = strobed.orbit(start, SETTLE_CYCLES - SETTLE_CYCLES % 128).end
     reference = strobed.orbit(waited, 128)
-    period = period_of(reference.points, reference.impacts, largest_period=64, tolerance=1e-9 * strobed.scale)
-    assert found.period == period > 0 and found.impacts == reference.impacts[-period:].sum()
+    period = repeats_after(reference.points, reference.impacts, largest_m=64, tolerance=1e-9 * strobed.scale)
+    assert found.m == period > 0 and found.impacts == reference.impacts[-period:].sum()
     cycle = reference.points[-period:]
     turned = (np.roll(cycle, k, axis=0) for k in range(period))
     assert min(np.max(np.abs(found.points[-period:] - one)) for one in turned) < 1e-8 * strobed.scale
@@ -43,14 +43,14 @@ def test_same_period_and_points_as_after_ten_thousand_cycles(name, frequency, ex
 def test_close_to_a_fold_the_proof_comes_long_before_the_repetition():
     """At 2e-7 above the fold of p4 the largest multiplier is within 1 % of one."""
     name, frequency = "single_mode", 21.50
-    family = Shooting(oscillator=single_mode(frequency), period=4)
+    family = Shooting(oscillator=single_mode(frequency), m=4)
     fold = fold_of(family)
     near = family.at_speed(1.2 * fold.speed, fold)
     start = near.strobe_state()
     strobed = strobed_at(name, frequency, fold.excess + 2e-7)
     proved = settle(strobed, start, most_cycles=100_000)
     repeated = settle(strobed, start, most_cycles=100_000, prove=False)
-    assert proved.period == repeated.period == 4 and proved.cycles < repeated.cycles
+    assert proved.m == repeated.m == 4 and proved.cycles < repeated.cycles
     orbit = family.at_excess(fold.excess + 2e-7, family.at_speed(1.005 * fold.speed, fold))
     assert 0.98 < abs(orbit.multipliers[0]) < 1.0
 
@@ -61,25 +61,25 @@ def test_below_the_fold_nothing_is_proved_to_be_p4():
     What comes after the passage is a chaotic transient, whose end the last bit decides: nothing is said of
     it.  As far above the fold, from the same start, p4 is what is proved.
     """
-    fold = fold_of(Shooting(oscillator=single_mode(21.50), period=4))
+    fold = fold_of(Shooting(oscillator=single_mode(21.50), m=4))
     start = fold.strobe_state()
     for distance in np.geomspace(1e-8, 1e-4, 17):
         sides = (strobed_at("single_mode", 21.50, fold.excess + way * distance) for way in (-1, 1))
         below, above = (settle(strobed, start, most_cycles=1024) for strobed in sides)
-        assert below.period == 0 or below.period % 4 != 0, distance
-        assert (above.period, above.impacts) == (4, 1), distance
+        assert below.m == 0 or below.m % 4 != 0, distance
+        assert (above.m, above.impacts) == (4, 1), distance
 
 
 def test_chaos_is_not_settled():
     strobed = strobed_at("single_mode", 21.50, 0.035)
     found = settle(strobed, strobed_at("single_mode", 21.50, -1e-3).steady(), most_cycles=3000)
-    assert found.period == 0 and found.impacts > 0 and found.cycles >= 3000
+    assert found.m == 0 and found.impacts > 0 and found.cycles >= 3000
 
 
 def test_the_motion_without_impacts_is_settled_by_its_energy():
     strobed = strobed_at("beam", 22.20, -2e-2)
     start = strobed_at("beam", 22.20, -2.2e-2).steady()
     found = settle(strobed, start, most_cycles=5000)
-    assert (found.period, found.impacts, found.cycles) == (1, 0, 128)
+    assert (found.m, found.impacts, found.cycles) == (1, 0, 128)
     steady = strobed.steady()
     assert np.allclose(found.end.displacement, steady.displacement, rtol=0, atol=1e-15)

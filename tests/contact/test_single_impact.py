@@ -20,7 +20,7 @@ T, MU, TAU = 0.0408, 3.56, 0.1
 def equation_1(frequency: float, period: int, restitution=TAU, free_period=T) -> MaximalFamily:
     plain = oscillators.equation_1(frequency, newton(restitution))
     model = single_mode(free_period=free_period, decay_rate=MU)
-    return MaximalFamily(oscillator=replace(plain, model=model), period=period)
+    return MaximalFamily(oscillator=replace(plain, model=model), m=period)
 
 
 @pytest.mark.parametrize(("frequency", "period"), [place[:2] for place in EQUATION_1])
@@ -82,10 +82,10 @@ def test_many_modes_with_one_tip_value_are_equation_1() -> None:
 def test_another_law_needs_its_restitution() -> None:
     plain = many_modes("three modes")
     soft = replace(plain, stop=Stop(gap=0.012, law=LinearContact(stiffness=1e6)))
-    given = MaximalFamily.from_oscillator(soft, period=3, restitution=0.35)
-    assert given.fold().excess == MaximalFamily(oscillator=plain, period=3).fold().excess
+    given = MaximalFamily.from_oscillator(soft, m=3, restitution=0.35)
+    assert given.fold().excess == MaximalFamily(oscillator=plain, m=3).fold().excess
     with pytest.raises(TypeError, match="restitution"):
-        MaximalFamily.from_oscillator(soft, period=3)
+        MaximalFamily.from_oscillator(soft, m=3)
 
 
 @pytest.mark.parametrize(
@@ -98,7 +98,7 @@ def test_another_law_needs_its_restitution() -> None:
 )
 def test_a_mode_without_a_return_is_named(changes: dict[str, list[float]], word: str) -> None:
     with pytest.raises(ValueError, match=word):
-        MaximalFamily(oscillator=many_modes("three modes", **changes), period=3)
+        MaximalFamily(oscillator=many_modes("three modes", **changes), m=3)
 
 
 def test_of_fig_5_a_second_impact_ends_the_orbits_below_grazing() -> None:

@@ -66,11 +66,11 @@ def test_planted_overshoots_are_found_and_none_is_invented(damping, size):
     paths = [0, 0]  # settled by the comparison, left
     for _ in range(12):
         single = oscillator(rng.uniform(20.5, 23.8), decay=DAMPINGS[damping], excess=0.02)
-        motion, u = single.motion(), rng.normal() * size * GAP
-        v = rng.normal() * size * GAP * motion.omega[0]
-        tip = Signal(motion, 0.0, np.array([u]), np.array([v]))
-        peak = float(highest(tip, 0.0, 0.0, motion.period))
-        begins = motion.tip_cosine + u
+        numbers, u = single.numbers(), rng.normal() * size * GAP
+        v = rng.normal() * size * GAP * numbers.omega[0]
+        tip = Signal(numbers, 0.0, np.array([u]), np.array([v]))
+        peak = float(highest(tip, 0.0, 0.0, numbers.period))
+        begins = numbers.tip_cosine + u
         if peak < 0.1 * GAP or peak - begins < 0.05 * peak:
             continue
         for power in range(1, 13):
@@ -101,17 +101,17 @@ def test_planted_overshoots_are_found_and_none_is_invented(damping, size):
 )
 def test_what_is_called_free_is_free(frequency, damping, excess, u, v, sign):
     period = Period(oscillator(frequency, decay=DAMPINGS[damping], excess=excess, participation=sign))
-    motion = period.motion
-    un, vn = np.array([u * GAP]), np.array([v * GAP * motion.omega[0]])
-    height = tip_state(motion, 0.0, un, vn)[0]
-    if height >= -tip_rounding(motion, un, vn):
+    numbers = period.numbers
+    un, vn = np.array([u * GAP]), np.array([v * GAP * numbers.omega[0]])
+    height = tip_state(numbers, 0.0, un, vn)[0]
+    if height >= -tip_rounding(numbers, un, vn):
         un -= height + 1e-6 * GAP
-    outcome, _s = first_crossing(motion, 0.0, un, vn, motion.period, 0)
+    outcome, _s = first_crossing(numbers, 0.0, un, vn, numbers.period, 0)
     status, impacts, left = period.fast(un.copy(), vn.copy(), at_a_strobe())
     if status == DONE and not left:
         assert (impacts == 0) == (outcome == FREE)
-        tip = Signal(motion, 0.0, un, vn)
-        assert (impacts == 0) == (highest(tip, motion.gap, 0.0, motion.period) < 0)
+        tip = Signal(numbers, 0.0, un, vn)
+        assert (impacts == 0) == (highest(tip, numbers.gap, 0.0, numbers.period) < 0)
 
 
 @pytest.mark.parametrize("damping", ["strong", "over-damped"])
@@ -119,13 +119,13 @@ def test_a_peak_at_the_strobe_hides_no_crossing_of_the_period_before(damping):
     """A mode of the other sign has its steady peak late in the period; states that rise at its begin."""
     single = oscillator(20.9, decay=DAMPINGS[damping], excess=-0.05, participation=-1.0)
     period = Period(single)
-    motion, rng = period.motion, np.random.default_rng(5)
+    numbers, rng = period.numbers, np.random.default_rng(5)
     free = touching = 0
     for _ in range(300):
-        u = -(motion.level + motion.tip_cosine) - 10 ** rng.uniform(-6, -1.5) * GAP
-        v = (rng.uniform(-0.3, 0.6)) * GAP * motion.omega[0]
+        u = -(numbers.level + numbers.tip_cosine) - 10 ** rng.uniform(-6, -1.5) * GAP
+        v = (rng.uniform(-0.3, 0.6)) * GAP * numbers.omega[0]
         arrays = np.array([u]), np.array([v])
-        outcome, _s = first_crossing(motion, 0.0, *arrays, motion.period, 0)
+        outcome, _s = first_crossing(numbers, 0.0, *arrays, numbers.period, 0)
         status, impacts, _left = period.fast(*arrays, at_a_strobe())
         assert status == DONE and (impacts == 0) == (outcome == FREE)
         free += impacts == 0

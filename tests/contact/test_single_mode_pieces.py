@@ -18,10 +18,10 @@ from contact.one_mode.period_table import period_table, table_at
 def test_the_table_of_another_amplitude_is_a_scaled_one(factor):
     single = oscillator(21.5)
     assert single.drive is not None
-    other = single.with_amplitude(factor * single.drive.amplitude).motion()
-    table, wanted = period_table(single.motion()), period_table(other)
+    other = single.with_amplitude(factor * single.drive.amplitude).numbers()
+    table, wanted = period_table(single.numbers()), period_table(other)
     assert table is not None and wanted is not None
-    found = table_at(table, single.motion(), factor)
+    found = table_at(table, single.numbers(), factor)
     steady = found.steady.factor * found.rows[:, :2]
     assert steady == pytest.approx(wanted.rows[:, :2], rel=1e-14, abs=1e-16 * GAP)
     for ours, theirs in ((found.mode, wanted.mode), (found.steady, wanted.steady._replace(factor=factor))):
@@ -29,27 +29,27 @@ def test_the_table_of_another_amplitude_is_a_scaled_one(factor):
             assert getattr(ours, name) == pytest.approx(value, rel=1e-13), name
     # far beyond any amplitude the place of the peak is not good enough
     assert wanted.steady.largest_deviation > 0
-    assert table_at(table, single.motion(), 1e7).steady.largest_deviation < 0
+    assert table_at(table, single.numbers(), 1e7).steady.largest_deviation < 0
 
 
 def test_it_is_offered_to_one_mode_under_newtons_law_only():
     single = oscillator()
-    assert period_table(single.motion()) is not None
+    assert period_table(single.numbers()) is not None
     for law in (contact.HertzContact(stiffness=1e9), contact.DelayedRestitution(restitution=0.1, delay=1e-3)):
         other = replace(single, stop=contact.Stop(gap=GAP, law=law))
-        assert period_table(other.motion()) is None
+        assert period_table(other.numbers()) is None
     with pytest.warns(SuspiciousValue, match="frequency of the drive"):
         fast = replace(single, drive=contact.HarmonicDrive(frequency=0.2, amplitude=0.01))
-    assert period_table(fast.motion()) is None
+    assert period_table(fast.numbers()) is None
     two = modes_on_stop([150.0, 900.0], 1.0, 1.0, 1.0, gap=GAP, drive=22.2).with_excess(0.02)
     for other in (two, modes_on_stop(0.0, 3.56, 1.0, 1.0)):
-        assert period_table(other.motion()) is None
+        assert period_table(other.numbers()) is None
 
 
 def test_a_constant_load_moves_the_mean_place():
     single = replace(oscillator(22.2, excess=0.0), load=np.array([0.03 * GAP * OMEGA**2]))
     strobed = contact.StroboscopicMap(oscillator=single)
-    assert period_table(single.motion()) is not None
+    assert period_table(single.numbers()) is not None
     ours = strobed.orbit(strobed.steady(), 300)
     run = contact.simulate(single, strobed.steady(), periods=300)
     points = np.hstack([run.strobe_displacement, run.strobe_velocity / single.model.omega])
@@ -73,8 +73,8 @@ def test_a_failure_of_the_general_loop_carries_its_time(monkeypatch):
     compiled = stroboscope.strobed_motion
 
     def failing(table, system, factors, u, v, runs, points, counts):
-        if system.motion.number0 == 0.5:
-            runs["clock"] = 0.25 * system.motion.period
+        if system.numbers.number0 == 0.5:
+            runs["clock"] = 0.25 * system.numbers.period
             return FAILED_CHATTER
         return compiled(table, system, factors, u, v, runs, points, counts)
 

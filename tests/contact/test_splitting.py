@@ -8,7 +8,7 @@ from oscillators import at_rest_on, modes_on_stop, slow
 from scipy.linalg import expm
 
 from contact import ContactLaw, HertzContact, ImpactOscillator, LinearContact, State, simulate
-from contact.flight.motion import Motion
+from contact.flight.numbers import Numbers
 from contact.integrators import Splitting
 from contact.integrators.splitting import COMPOSITIONS, first_instability, spectral_radius, step_matrix
 
@@ -28,15 +28,15 @@ def spring(law: ContactLaw, *, n: int = 4, ratio: float = 0.0, driven: bool = Fa
 def test_a_contact_that_stays_closed_is_followed_with_the_full_order(order, damping):
     """Against the matrix exponential of the linear motion in contact."""
     oscillator = spring(LinearContact(stiffness=1e6, damping=damping), ratio=0.01)
-    motion, n, time = oscillator.motion(), 4, 2e-3
+    numbers, n, time = oscillator.numbers(), 4, 2e-3
     phi = PHI[:, None]
-    stiff, decay = np.diag(OMEGA**2) + 1e6 * phi @ phi.T, np.diag(motion.decay) + damping * phi @ phi.T
+    stiff, decay = np.diag(OMEGA**2) + 1e6 * phi @ phi.T, np.diag(numbers.decay) + damping * phi @ phi.T
     exact = expm(time * np.block([[np.zeros((n, n)), np.eye(n)], [-stiff, -decay]]))
     weight = np.concatenate([OMEGA, np.ones(n)])
     steps = np.array([100, 200, 400]) * (4 if order == 2 else 1)
     errors = []
     for count in steps:
-        one = step_matrix(motion, COMPOSITIONS[order], time / count, 1e6, damping)
+        one = step_matrix(numbers, COMPOSITIONS[order], time / count, 1e6, damping)
         error = weight[:, None] * (np.linalg.matrix_power(one, count) - exact) / weight
         errors.append(np.abs(error).max())
     rates = np.log2(np.divide(errors[:-1], errors[1:]))
@@ -56,7 +56,7 @@ def test_the_march_is_the_step_matrix(order, law):
         assert end.regime == 1
         ends.append(np.concatenate([end.displacement, end.velocity]))
     change = ends[1] - ends[0]
-    once = step_matrix(oscillator.motion(), COMPOSITIONS[order], 1e-5, law.stiffness, law.damping)
+    once = step_matrix(oscillator.numbers(), COMPOSITIONS[order], 1e-5, law.stiffness, law.damping)
     power = np.linalg.matrix_power(once, 7)
     assert change == pytest.approx(power @ shift, rel=1e-8, abs=1e-11 * np.abs(shift).max())
 
@@ -93,32 +93,32 @@ def test_dense_output_in_contact_has_the_order_of_the_method(order):
     assert np.log2(np.divide(errors[:-1], errors[1:])) == pytest.approx(order, abs=0.5)
 
 
-def closed_form_limit(motion: Motion, step: float, damping: float = 0.0) -> float:
+def closed_form_limit(numbers: Numbers, step: float, damping: float = 0.0) -> float:
     """k_crit of order 2 for omega h < pi, with a dashpot in the contact [N/m].
 
     An eigenvector to the eigenvalue -1 satisfies for each mode, whose flow over the step h is (A, B; C, D)
     with determinant e, u = phi J B/(1 + A + D + e), v = phi J (D + e)/(1 + A + D + e), J = s (k phi.u + c
     phi.v), s = (1 - exp(-c Phi h))/(c Phi); hence k = (1/s - c phi.v/J)/(phi.u/J).
     """
-    modes = zip(motion.omega, motion.decay, strict=True)
+    modes = zip(numbers.omega, numbers.decay, strict=True)
     flows = [expm(step * np.array([[0, 1], [-(w**2), -c]])) for w, c in modes]
-    weight = motion.phi**2 / np.array([1 + np.trace(flow) + np.linalg.det(flow) for flow in flows])
+    weight = numbers.phi**2 / np.array([1 + np.trace(flow) + np.linalg.det(flow) for flow in flows])
     x = sum(w * flow[0, 1] for w, flow in zip(weight, flows, strict=True))
     y = sum(w * (flow[1, 1] + np.linalg.det(flow)) for w, flow in zip(weight, flows, strict=True))
-    rate = damping * motion.inverse_mass
+    rate = damping * numbers.inverse_mass
     acts = -math.expm1(-rate * step) / rate if rate > 0 else step
     return float((1 / acts - damping * y) / x)
 
 
 def test_beyond_pi_the_limit_is_a_resonance_of_step_and_contact():
     """One mode: k h phi^2 |sin theta| / omega = 2 (1 - |cos theta|) or 2 (1 + ...), whichever root is met."""
-    motion = modes_on_stop(1000.0, phi=5.0, law=SOFT).motion()
+    numbers = modes_on_stop(1000.0, phi=5.0, law=SOFT).numbers()
     for angle in (4.0, 5.5, 7.5):
         step = angle / 1000.0
         # z = cos(theta) - k h phi^2 sin(theta) / (2 omega) leaves [-1, 1] upwards where sin(theta) < 0
         reach = (1 - math.cos(angle)) if math.sin(angle) < 0 else (1 + math.cos(angle))
         exact = 2 * 1000.0 * reach / (step * 25.0 * abs(math.sin(angle)))
-        assert Splitting(step=step).critical_stiffness(motion) == pytest.approx(exact, rel=1e-6)
+        assert Splitting(step=step).critical_stiffness(numbers) == pytest.approx(exact, rel=1e-6)
 
 
 @pytest.mark.parametrize("ratio, damping", [(0.0, 0.0), (0.0, 30.0), (0.02, 0.0), (0.02, 30.0), (1.5, 5.0)])
@@ -129,15 +129,15 @@ def test_the_first_instability_is_not_preceded_by_another(order, ratio, damping,
     for seed in range(3):
         random = np.random.default_rng(seed)
         omega, phi = np.sort(random.uniform(100.0, 5000.0, 4)), random.uniform(1.0, 10.0, 4)
-        motion = modes_on_stop(omega, 2 * ratio * omega, phi, 0.1, law=SOFT).motion()
-        step, steps = (0.3, 1.0, 2.5)[seed % 3] / motion.omega[-1], COMPOSITIONS[order]
-        limit = first_instability(motion, steps, step, damping)
+        numbers = modes_on_stop(omega, 2 * ratio * omega, phi, 0.1, law=SOFT).numbers()
+        step, steps = (0.3, 1.0, 2.5)[seed % 3] / numbers.omega[-1], COMPOSITIONS[order]
+        limit = first_instability(numbers, steps, step, damping)
         below = np.geomspace(1e-3, 0.9999, radii) * limit
-        assert spectral_radius(motion, steps, step, below, damping).max() < 1 + 1e-6
-        assert spectral_radius(motion, steps, step, (1 + 1e-5) * limit, damping) > 1 + 1e-7
+        assert spectral_radius(numbers, steps, step, below, damping).max() < 1 + 1e-6
+        assert spectral_radius(numbers, steps, step, (1 + 1e-5) * limit, damping) > 1 + 1e-7
         if order == 2:
             digits = 1e-5 if damping or ratio > 1 else 1e-9
-            assert limit == pytest.approx(closed_form_limit(motion, step, damping), rel=digits)
+            assert limit == pytest.approx(closed_form_limit(numbers, step, damping), rel=digits)
 
 
 def energy_steps(law: ContactLaw, order: int, step: float, periods: int) -> np.ndarray:

@@ -90,11 +90,11 @@ ELASTIC += [(NonsmoothGeneralisedAlpha(step=2e-5, rho=rho), rho == 1.0) for rho 
 @pytest.mark.parametrize(("method", "kept"), ELASTIC)
 def test_elastic_impacts_keep_the_energy_to_rounding_if_the_flight_does(method, kept: bool) -> None:
     beam = spring(3, newton(1.0), damping=0.0)
-    motion = simulate(beam, THROWN, duration=4.0, method=method)
+    numbers = simulate(beam, THROWN, duration=4.0, method=method)
     begun = float(beam.energy(THROWN.displacement, THROWN.velocity))
-    left = float(beam.energy(motion.end.displacement, motion.end.velocity)) / begun
-    assert len(motion.impacts) > (100 if kept else 5)
-    assert np.abs(motion.impacts.loss).max() < 1e-14 * begun
+    left = float(beam.energy(numbers.end.displacement, numbers.end.velocity)) / begun
+    assert len(numbers.impacts) > (100 if kept else 5)
+    assert np.abs(numbers.impacts.loss).max() < 1e-14 * begun
     # 2e5 steps, each good to one unit of the last place
     assert left == pytest.approx(1.0, rel=1e-11) if kept else left < 0.999
 
@@ -104,11 +104,11 @@ def test_what_is_lost_is_what_the_log_says() -> None:
     beam = spring(3, newton(0.7), damping=0.0)
     begun, gaps = float(beam.energy(THROWN.displacement, THROWN.velocity)), []
     for step in (8e-6, 2e-6):
-        motion = simulate(beam, THROWN, duration=0.3, method=MoreauJean(step=step))
-        end = float(beam.energy(motion.end.displacement, motion.end.velocity))
-        gaps.append(abs(begun - end - motion.impacts.loss.sum()) / begun)
-        ratio = motion.impacts.rebound / motion.impacts.approach
-        single = motion.impacts.start == motion.impacts.end
+        numbers = simulate(beam, THROWN, duration=0.3, method=MoreauJean(step=step))
+        end = float(beam.energy(numbers.end.displacement, numbers.end.velocity))
+        gaps.append(abs(begun - end - numbers.impacts.loss.sum()) / begun)
+        ratio = numbers.impacts.rebound / numbers.impacts.approach
+        single = numbers.impacts.start == numbers.impacts.end
         assert single.all() and np.allclose(ratio, -0.7, rtol=1e-9)
     assert gaps[0] < 1e-2 and gaps[1] < 0.5 * gaps[0]
 
@@ -117,15 +117,15 @@ def test_impacts_that_accumulate_are_passed() -> None:
     """A ball: h = 1 m, g = 9.81 m/s^2, e = 0.7, at rest after 2.55863 s."""
     ball, step = falling_body(1.0, newton(0.7)), 1e-4
     times = np.array([2.0, 2.5, 2.65, 3.0, 4.0])
-    motion = simulate(ball, duration=4.0, times=times, method=MoreauJean(step=step))
+    numbers = simulate(ball, duration=4.0, times=times, method=MoreauJean(step=step))
     exact = simulate(ball, duration=4.0, times=times)
-    heights = 1.0 - motion.displacement[:, 0]
+    heights = 1.0 - numbers.displacement[:, 0]
     np.testing.assert_allclose(heights[:2], 1.0 - exact.displacement[:2, 0], atol=20 * step)
     # at rest from there on: no velocity above one step of gravity, the same place to the last digit
-    assert np.all(np.abs(motion.velocity[2:, 0]) <= 9.81 * step)
+    assert np.all(np.abs(numbers.velocity[2:, 0]) <= 9.81 * step)
     assert abs(heights[2]) < 9.81 * step**2 and np.ptp(heights[2:]) < 9.81 * step**2
-    apart = np.diff(motion.impacts.start)
-    settled = motion.impacts.start[1:][apart < 20 * step]
+    apart = np.diff(numbers.impacts.start)
+    settled = numbers.impacts.start[1:][apart < 20 * step]
     assert settled[0] == pytest.approx(2.55863, abs=0.02)
 
 
@@ -139,10 +139,10 @@ def test_the_penetration_stays_below_a_step(restitution: float) -> None:
         mass = falling_body((5 + phase) * step * speed, newton(restitution), gravity=0.0)
         start = State(displacement=np.zeros(1), velocity=np.array([speed]))
         times = step * np.arange(1, 13)
-        motion = simulate(mass, start, duration=12 * step, times=times, method=MoreauJean(step=step))
-        assert len(motion.impacts) == 1
-        depth = motion.displacement[:, 0] - mass.stop.gap
-        corner = float(motion.impacts.displacement_start[0, 0]) - mass.stop.gap
+        numbers = simulate(mass, start, duration=12 * step, times=times, method=MoreauJean(step=step))
+        assert len(numbers.impacts) == 1
+        depth = numbers.displacement[:, 0] - mass.stop.gap
+        corner = float(numbers.impacts.displacement_start[0, 0]) - mass.stop.gap
         assert -1e-12 <= corner / (step * speed) < 1
         # before, at and after the step of the impact
         assert depth.max() / (step * speed) <= max(0.5, 1 - 0.5 * restitution) + 1e-12
@@ -157,13 +157,13 @@ def test_samples_know_on_which_side_of_the_jump_they_lie() -> None:
     start = State(displacement=np.zeros(1), velocity=np.ones(1))
     step, times = 0.3, np.linspace(0.0, 2.0, 401)
     for theta, corner in ((0.5, 0.9 + 0.5 * step), (1.0, 0.9), (0.8, 0.9 + 0.2 * step)):
-        motion = simulate(mass, start, duration=2.0, times=times, method=MoreauJean(step=step, theta=theta))
+        numbers = simulate(mass, start, duration=2.0, times=times, method=MoreauJean(step=step, theta=theta))
         expected = np.where(times < corner, times, corner - 0.5 * (times - corner))
-        np.testing.assert_allclose(motion.displacement[:, 0], expected, atol=1e-12)
+        np.testing.assert_allclose(numbers.displacement[:, 0], expected, atol=1e-12)
         clear = np.abs(times - corner) > 1e-6
         speeds = np.where(times < corner, 1.0, -0.5)
-        np.testing.assert_allclose(motion.velocity[clear, 0], speeds[clear], atol=1e-12)
-        assert motion.impacts.start[0] == pytest.approx(corner, rel=1e-12)
+        np.testing.assert_allclose(numbers.velocity[clear, 0], speeds[clear], atol=1e-12)
+        assert numbers.impacts.start[0] == pytest.approx(corner, rel=1e-12)
 
 
 def test_an_end_within_rounding_behind_an_impact_is_taken() -> None:
@@ -178,24 +178,24 @@ def test_a_stay_on_the_stop_does_not_drift() -> None:
     """Held by a load, e = 0: penetration below h U, constant, and the next step as the last."""
     beam = spring(3, newton(0.0), damping=0.05, load=np.array([2000.0, 0.0, 0.0]))
     times, step = np.array([0.6, 0.7, 0.8]), 2e-5
-    motion = simulate(beam, duration=0.8, times=times, method=NonsmoothGeneralisedAlpha(step=step, rho=0.5))
-    depth = motion.displacement @ TIP - GAP
-    fastest = motion.impacts.approach.max()
+    numbers = simulate(beam, duration=0.8, times=times, method=NonsmoothGeneralisedAlpha(step=step, rho=0.5))
+    depth = numbers.displacement @ TIP - GAP
+    fastest = numbers.impacts.approach.max()
     assert 0 <= depth[-1] < step * fastest and np.ptp(depth) < 1e-6 * step * fastest
     # static equilibrium with the tip held there: omega^2 q = load - phi N
     weights = TIP / OMEGA[:3] ** 2
     hold = (weights @ beam.load - GAP - depth[-1]) / (weights @ TIP)
     rest = (beam.load - TIP * hold) / OMEGA[:3] ** 2
-    np.testing.assert_allclose(motion.displacement[-1], rest, atol=1e-6 * GAP)
+    np.testing.assert_allclose(numbers.displacement[-1], rest, atol=1e-6 * GAP)
 
 
 @pytest.mark.parametrize("zeta", [0.3, 1.7])
 def test_the_limit_is_where_the_growth_factor_of_a_step_leaves_one(zeta: float) -> None:
-    motion = modes_on_stop(100.0, 2 * zeta * 100.0).motion()
+    numbers = modes_on_stop(100.0, 2 * zeta * 100.0).numbers()
     for step in (1e-3, 3e-3, 6e-3, 1e-2, 2e-2, 4e-2):
         system = np.array([[0.0, 1.0], [-1e4, -200.0 * zeta]])
         for theta in (0.0, 0.3):
             old, new = np.eye(2) + (1 - theta) * step * system, np.eye(2) - theta * step * system
             factors = np.linalg.eigvals(np.linalg.solve(new, old))
             grows = np.abs(factors).max() > 1 + 1e-9
-            assert (MoreauJean(step=step, theta=theta).critical_stiffness(motion) < 0) == grows
+            assert (MoreauJean(step=step, theta=theta).critical_stiffness(numbers) < 0) == grows

@@ -13,8 +13,8 @@ from oscillators import modes_on_stop
 from contact import ImpactOscillator
 from contact.flight.crossing import CROSSES, FREE, GRAZE_TOLERANCE, GRAZES, first_crossing
 from contact.flight.elementary import EPS
+from contact.flight.numbers import LOAD, Numbers
 from contact.flight.tip import tip_rounding
-from contact.flight.motion import LOAD, Motion
 
 Real = np.longdouble
 SHORT = np.finfo(Real).eps > 2e-19
@@ -25,16 +25,16 @@ PLANTED = [sign * 10.0**-k for k in range(1, 13) for sign in (1.0, -1.0)]
 class Signal:
     """Tip displacement x(s) = y(s) + gap of a free flight, and its derivatives, in double or long double."""
 
-    def __init__(self, motion: Motion, base: float, u: np.ndarray, v: np.ndarray) -> None:
-        self.motion, self.base = motion, base
+    def __init__(self, numbers: Numbers, base: float, u: np.ndarray, v: np.ndarray) -> None:
+        self.numbers, self.base = numbers, base
         terms: list[tuple[complex, complex]] = []  # rates and coefficients of exp(rate s)
         polynomial = np.zeros(3, dtype=Real)
-        for k in range(motion.size):
-            o, c = Real(motion.omega[k]), Real(motion.decay[k])
-            a, b, phi = Real(u[k]), Real(v[k]), Real(motion.phi[k])
+        for k in range(numbers.size):
+            o, c = Real(numbers.omega[k]), Real(numbers.decay[k])
+            a, b, phi = Real(u[k]), Real(v[k]), Real(numbers.phi[k])
             square = (o - c / 2) * (o + c / 2)
             if o == 0 and c == 0:
-                polynomial += phi * np.array([a, b, Real(motion.row(LOAD)[k]) / 2])
+                polynomial += phi * np.array([a, b, Real(numbers.row(LOAD)[k]) / 2])
             elif square > 0:
                 d = np.sqrt(square)
                 terms.append((np.clongdouble(-c / 2 + 1j * d), phi * (a - 1j * (b + c / 2 * a) / d)))
@@ -42,21 +42,21 @@ class Signal:
                 d = np.sqrt(-square)
                 fast, slow = -c / 2 - d, -o * o / (c / 2 + d)
                 if o == 0:  # constant load against a drag: terminal velocity g/c
-                    g = Real(motion.row(LOAD)[k])
+                    g = Real(numbers.row(LOAD)[k])
                     polynomial += phi * np.array([a + (b - g / c) / c, g / c, Real(0)])
                     terms.append((np.clongdouble(-c), np.clongdouble(-phi * (b - g / c) / c)))
                 else:
                     terms.append((np.clongdouble(slow), np.clongdouble(phi * (b - fast * a) / (slow - fast))))
                     terms.append((np.clongdouble(fast), np.clongdouble(phi * (slow * a - b) / (slow - fast))))
-        if motion.drive > 0:
-            w = Real(motion.drive)
+        if numbers.drive > 0:
+            w = Real(numbers.drive)
             turn = np.cos(w * Real(base)) + 1j * np.sin(w * Real(base))
-            amplitude = (Real(motion.tip_cosine) - 1j * Real(motion.tip_sine)) * turn
+            amplitude = (Real(numbers.tip_cosine) - 1j * Real(numbers.tip_sine)) * turn
             terms.append((np.clongdouble(1j * w), np.clongdouble(amplitude)))
         self.rates = np.array([r for r, _ in terms], dtype=np.clongdouble)
         self.terms = np.array([t for _, t in terms], dtype=np.clongdouble)
         self.polynomial = polynomial
-        self.shift = Real(motion.level) + Real(motion.gap)
+        self.shift = Real(numbers.level) + Real(numbers.gap)
 
     def __call__(self, s: np.ndarray, order: int = 0) -> np.ndarray:
         """x or a derivative of it at `s`, in the precision of `s`."""
@@ -140,8 +140,8 @@ def highest(signal: Signal, gap: float, start: float, end: float) -> Real:
     return (signal(places) - Real(gap)).max()
 
 
-def search(motion: Motion, base: float, u: np.ndarray, v: np.ndarray, duration: float, order: int = 0):
-    return first_crossing(motion, base, u, v, duration, order)
+def search(numbers: Numbers, base: float, u: np.ndarray, v: np.ndarray, duration: float, order: int = 0):
+    return first_crossing(numbers, base, u, v, duration, order)
 
 
 def random_oscillator(
@@ -160,26 +160,26 @@ def random_oscillator(
     return modes_on_stop(omega, decay, phi, participation, drive=drive)
 
 
-def random_deviation(generator: np.random.Generator, motion: Motion, *, ringing: float) -> tuple:
+def random_deviation(generator: np.random.Generator, numbers: Numbers, *, ringing: float) -> tuple:
     """Deviations of random phase; tip amplitudes fall with the mode number, more slowly when ringing."""
-    n = motion.size
+    n = numbers.size
     amplitude = 0.01 * generator.uniform(0.1, 1, n) / (1 + np.arange(n)) ** (1.0 if ringing else 2.0)
     phase = generator.uniform(0, 2 * np.pi, n)
-    u = amplitude * np.cos(phase) / np.abs(motion.phi)
-    v = amplitude * np.sin(phase) * motion.omega / np.abs(motion.phi)
+    u = amplitude * np.cos(phase) / np.abs(numbers.phi)
+    v = amplitude * np.sin(phase) * numbers.omega / np.abs(numbers.phi)
     return u, v
 
 
-def with_gap(motion: Motion, gap: float) -> Motion:
+def with_gap(numbers: Numbers, gap: float) -> Numbers:
     """The same oscillator with the stop elsewhere (no constant load, so that level = -gap)."""
-    return motion._replace(gap=gap, level=-gap)
+    return numbers._replace(gap=gap, level=-gap)
 
 
 @dataclass
 class Flight:
     """A random flight with its peaks, and those that the tip reaches first and well above its start."""
 
-    motion: Motion
+    numbers: Numbers
     base: float
     u: np.ndarray
     v: np.ndarray
@@ -189,9 +189,9 @@ class Flight:
     start: float
     chosen: list[int]
 
-    def against(self, gap: float, end: float) -> tuple[Motion, tuple]:
+    def against(self, gap: float, end: float) -> tuple[Numbers, tuple]:
         """The same oscillator with its stop elsewhere, and what the search finds up to `end`."""
-        stopped = with_gap(self.motion, gap)
+        stopped = with_gap(self.numbers, gap)
         return stopped, first_crossing(stopped, self.base, self.u, self.v, end, 0)
 
     def agrees(self, gap: float, end: float) -> str:
@@ -205,32 +205,34 @@ def flights(seed: list[int], n_modes: int, count: int, kind: str = "ringing", la
     """Random flights, at rest, ringing or without a drive; half of them from up to `late` periods on."""
     generator = np.random.default_rng(seed)
     for _ in range(count):
-        motion = random_oscillator(generator, n_modes, driven=kind != "drive off").motion()
-        u, v = random_deviation(generator, motion, ringing=kind == "ringing")
-        base = float(generator.uniform(0, late) * motion.period * generator.integers(0, 2))
-        signal = Signal(motion, base, u, v)
-        places = signal.peaks(motion.period - base)
+        numbers = random_oscillator(generator, n_modes, driven=kind != "drive off").numbers()
+        u, v = random_deviation(generator, numbers, ringing=kind == "ringing")
+        base = float(generator.uniform(0, late) * numbers.period * generator.integers(0, 2))
+        signal = Signal(numbers, base, u, v)
+        places = signal.peaks(numbers.period - base)
         heights = signal(places)
         start = max(float(signal(Real(0))), 0.0)
         # the peaks that are higher than all before them
         before = np.concatenate([[-np.inf], np.maximum.accumulate(heights.astype(float))[:-1]])
         chosen = [i for i in np.flatnonzero(heights > before) if heights[i] > 1.2 * start + 1e-4]
-        yield Flight(motion, base, u, v, signal, places, heights, start, chosen)
+        yield Flight(numbers, base, u, v, signal, places, heights, start, chosen)
 
 
 def assert_agrees(
-    result: tuple, verdict: Verdict, motion: Motion, u: np.ndarray, v: np.ndarray, base: float
+    result: tuple, verdict: Verdict, numbers: Numbers, u: np.ndarray, v: np.ndarray, base: float
 ) -> str:
     """Compare an outcome with the judge's; only a peak within twice the rounding bound may be a graze."""
     outcome, s = result
-    bound = tip_rounding(motion, u, v)
+    bound = tip_rounding(numbers, u, v)
     if abs(verdict.peak) <= 2.0 * bound:
-        assert outcome in (CROSSES, FREE, GRAZES) or bound > GRAZE_TOLERANCE * motion.gap
+        assert outcome in (CROSSES, FREE, GRAZES) or bound > GRAZE_TOLERANCE * numbers.gap
         return "within rounding"
     if verdict.peak < 0:
-        assert outcome == FREE, f"invented a touch {float(verdict.peak / motion.gap):.2e} of the gap below it"
+        assert outcome == FREE, (
+            f"invented a touch {float(verdict.peak / numbers.gap):.2e} of the gap below it"
+        )
         return "free"
-    assert outcome == CROSSES, f"missed an overshoot of {float(verdict.peak / motion.gap):.2e} of the gap"
+    assert outcome == CROSSES, f"missed an overshoot of {float(verdict.peak / numbers.gap):.2e} of the gap"
     allowed = bound / verdict.slope + 4 * EPS * (base + verdict.time)
     assert abs(s - verdict.time) <= allowed, (
         f"time off by {float(abs(s - verdict.time)):.2e}, allowed {allowed:.2e}"

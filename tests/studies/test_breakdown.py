@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from contact import MapFamily, maximal_period
+from contact import MapFamily, maximal_m
 from studies import letter
 from studies.experiment.breakdown import model
 from studies.experiment.breakdown.model import FREQUENCY_HZ, Spring, cell_of, fig_5, island, periods, scanned
@@ -37,7 +37,7 @@ def test_the_beam_of_fig_5_has_its_period_and_damping_and_keeps_ball_and_gap(sce
 def test_the_map_puts_fig_5_in_the_region_of_a_stable_p3(scene):
     nordmark = nordmark_at(scene, FREQUENCY_HZ)
     low, high = MapFamily(nordmark, 3).stable_range()
-    assert maximal_period(nordmark) == 3 and low < 0 < high
+    assert maximal_m(nordmark) == 3 and low < 0 < high
     # and the letter's rho of the chaos is not its excess
     chaos = letter.BREAKDOWN["chaos_at"]
     assert nordmark.excess(chaos) / chaos == pytest.approx(0.787, abs=2e-3)
@@ -52,11 +52,11 @@ def test_the_island_of_eq_1_starts_at_the_fold_and_outlives_the_single_impact_p3
 ):
     found, diagram = island(scene, restitution, step=1e-3)
     assert found.fold_p3 == pytest.approx(fold, abs=2e-5)
-    on_p3 = (diagram.period == 3) & (diagram.impacts == 1)
+    on_p3 = (diagram.m == 3) & (diagram.impacts == 1)
     assert on_p3[0] and diagram.excess[on_p3].max() < second_impact + 2e-5
     # chaos is a transient beyond the end, which a scan of finite length overruns by a few steps at most
     assert found.end == pytest.approx(end, abs=4e-3)
-    assert np.mean(diagram.period == 0) > 0.5
+    assert np.mean(diagram.m == 0) > 0.5
     # the letter's chaos at -0.0707 is there for the smaller tau only
     assert (found.end >= letter.BREAKDOWN["chaos_at"]) == (restitution == 0.05)
     # not connected to grazing: the motion without impacts is stable all along
@@ -66,12 +66,12 @@ def test_the_island_of_eq_1_starts_at_the_fold_and_outlives_the_single_impact_p3
 def test_the_beam_as_calibrated_and_eq_1_are_born_without_a_period(scene, calibrated):
     for spring in (model.single_mode(scene, 0.1), calibrated):
         cell = cell_of(spring)
-        assert cell.period == 0 and cell.impacts > 20
+        assert cell.m == 0 and cell.impacts > 20
 
 
 def test_a_lighter_ball_gives_the_letters_p6_and_p3_at_the_end_of_the_downward_scan(light):
     cell = cell_of(light)
-    assert (cell.period, cell.impacts) == (6, 3)
+    assert (cell.m, cell.impacts) == (6, 3)
     outcome, ways = scanned(("light", light), points=31, cycles=500, early=True)
     assert outcome.born_period == 6 and -0.09 < outcome.fold_p3 < -0.05 and outcome.ends_on_p3
     up, down = ways["up"], ways["down"]
@@ -93,7 +93,7 @@ def test_errors_of_the_letter_do_not_give_period_6_to_the_calibrated_beam(scene,
     given[key] += side * given[key.replace(name, f"{name}_error")]
     here = scene.replace({"damping.decay_rate_per_s": given["decay_rate_per_s"]})
     model = model_of(calibrate_thickness(here, given["free_period_s"]))
-    assert cell_of(Spring(scene=here, model=model, tip_mass_kg=scene.tip.mass_kg)).period != 6
+    assert cell_of(Spring(scene=here, model=model, tip_mass_kg=scene.tip.mass_kg)).m != 6
 
 
 def test_small_form(run_study):

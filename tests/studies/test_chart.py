@@ -60,8 +60,8 @@ def test_both_orbits_have_a_basin_between_fold_and_grazing_and_one_below(letter_
     assert np.mean(leads == 1) > 0.02 and np.mean(leads == 4) > 0.5
     below = plane_of(letter_scene, FREQUENCY, 6, -0.02)
     leads = np.array([below.line(v) for v in below.velocity.tolist()])
-    assert below.period == 1 and set(np.unique(leads)) <= {-1, 1}  # below the fold of -0.0132 only p1 is left
-    assert parts(leads, below.period) == {"p1 without impacts": 1.0, "something else": 0.0}
+    assert below.m == 1 and set(np.unique(leads)) <= {-1, 1}  # below the fold of -0.0132 only p1 is left
+    assert parts(leads, below.m) == {"p1 without impacts": 1.0, "something else": 0.0}
 
 
 def test_small_form(run_study, monkeypatch):
@@ -70,8 +70,8 @@ def test_small_form(run_study, monkeypatch):
     assert ran.code == 0
     rows = ran.rows("cut")
     for row in rows:
-        assert (row["kind"] in (PERIODIC, WITHOUT)) == (int(row["period"]) > 0)
-        assert float(row["lyapunov_map"]) < 0.0 or not int(row["period"])
+        assert (row["kind"] in (PERIODIC, WITHOUT)) == (int(row["m"]) > 0)
+        assert float(row["lyapunov_map"]) < 0.0 or not int(row["m"])
     seen = [row for row in rows if (row["model"], row["kind"]) == ("single_mode", WITHOUT)]
     seen.sort(key=lambda row: float(row["excess"]))
     last = {row["direction"]: float(row["excess"]) for row in seen}

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from contact import StroboscopicMap, maximal_period
+from contact import StroboscopicMap, maximal_m
 from contact.orbits import settle
 from studies.experiment.claims.model import RESTITUTIONS, Job, born_at, line_of, node_at, springs, trends
 from studies.shell.scene import nordmark_at, single_mode_at
@@ -23,13 +23,13 @@ def followed(strobed, values):
     for excess in values:
         found = settle(strobed.at(float(excess)), state, most_cycles=6000)
         state = found.end
-    return found.period, found.impacts
+    return found.m, found.impacts
 
 
 @pytest.mark.parametrize(("frequency", "tau", "m"), [(20.90, 0.3, 3), (21.50, 0.0, 4), (22.20, 0.4, 5)])
 def test_the_node_keeps_one_impact_up_to_its_secondary_bifurcation(letter_scene, frequency, tau, m):
     found = node_at(with_tau(letter_scene, tau), frequency)
-    assert found.period == m and found.admissible and found.secondary > 1e-3
+    assert found.m == m and found.admissible and found.secondary > 1e-3
     strobed = strobed_at(letter_scene, frequency, tau)
     below = np.linspace(5e-4, found.secondary * 0.99, 25)
     assert followed(strobed, below) == (m, 1)
@@ -55,4 +55,4 @@ def test_hysteresis_falls_with_the_energy_lost_and_rho_of_the_map_does_not(lette
 def test_eq_1_has_the_period_of_the_map_near_the_upper_edge_of_a_band(letter_scene, position):
     eq1 = springs(letter_scene.replace({"modes.count": 1}))[0]
     place = nordmark_at(letter_scene, position / letter_scene.single_mode.free_period_s)
-    assert eq1[2].n_modes == 1 and born_at(Job(*eq1, position, 1e-4)) == maximal_period(place)
+    assert eq1[2].n_modes == 1 and born_at(Job(*eq1, position, 1e-4)) == maximal_m(place)

@@ -77,4 +77,4 @@ def test_a_signal_ends_a_program_with_what_it_stored(tmp_path, number):
     assert "go on with: python -m studies chart --points 4000 60" in err
     assert json.loads((tmp_path / "chart" / "summary.json").read_text())["status"] == "interrupted"
     for path in store.glob("[0-9]*.npz"):
-        assert np.load(path)["period"].shape == (2, 60)
+        assert np.load(path)["m"].shape == (2, 60)

@@ -6,7 +6,7 @@ from PIL import Image
 
 from beam import BRASS, DAMPING_TAPE, STEEL
 from contact import StroboscopicMap
-from contact.orbits import born
+from contact.orbits import onset_orbit
 from studies.experiment.time_trace.film import drawn_shapes, film_orbit
 from studies.shell import painter
 from studies.shell.film import can_encode, write_gif, written_as_mp4
@@ -58,9 +58,9 @@ def test_higher_modes_are_enlarged_and_the_tip_stays_where_it_is(scene, modes):
 
 def test_the_frames_of_an_orbit_show_its_contact(scene):
     oscillator = beam_at(scene, 21.5).with_excess(0.013)
-    settled = born(StroboscopicMap(oscillator=oscillator), 0.013)
-    orbit = film_orbit(oscillator, settled.end, settled.period, frames=80, rate=20.0)
-    assert settled.period == 4 and len(orbit.contacts) == settled.impacts >= 1
+    settled = onset_orbit(StroboscopicMap(oscillator=oscillator), 0.013)
+    orbit = film_orbit(oscillator, settled.end, settled.m, frames=80, rate=20.0)
+    assert settled.m == 4 and len(orbit.contacts) == settled.impacts >= 1
     touched = orbit.touched[:, 0]
     assert touched.any() and np.all(orbit.tip[touched] >= oscillator.stop.gap * (1 - 1e-12))
     assert orbit.slowed[touched].min() > 20.0 * orbit.slowed.min()

@@ -81,7 +81,7 @@ durations, closed, with a condition on the eigenvalues of their product."""
 def test_the_bifurcations_of_two_masses_by_a_boundary_problem_in_40_digits():
     here = two_masses(0.635)
     settled = replace(simulate(here, periods=400).end, time=0.0)
-    start = Shooting(oscillator=here, period=1, impacts=1).from_state(settled)
+    start = Shooting(oscillator=here, m=1, impacts=1).from_state(settled)
     branch = follow_path(two_masses, start, 0.635, low=0.5, high=0.8, step=0.3)
     for kind, exact in BY_A_BOUNDARY_PROBLEM.items():
         found = [event.parameter for event in branch.events if event.kind == kind]

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from matplotlib.text import Text
 
-from contact import NewtonRestitution, StroboscopicMap, maximal_period
-from contact.orbits import born, orbit_end
+from contact import NewtonRestitution, StroboscopicMap, maximal_m
+from contact.orbits import onset_orbit, orbit_end
 from studies.experiment.hysteresis.figure import draw_curves
 from studies.experiment.hysteresis.model import CAUSES, CHAIN, branch_of, folds_at, inside_band, path_of
 from studies.physics.descriptions import falls
@@ -45,8 +45,8 @@ def test_with_one_mode_and_newtons_law_the_whole_chain_is_eq_1(letter_scene):
 def test_a_downward_scan_of_the_simulated_beam_ends_at_the_fold(fold, beam):
     row, _ = fold
     strobed = StroboscopicMap(oscillator=beam)
-    end = orbit_end(strobed, born(strobed).end, 1e-3, most_cycles=20_000, relative=1e-3, absolute=1e-8)
-    assert row.beam_admissible and end.period == 4
+    end = orbit_end(strobed, onset_orbit(strobed).end, 1e-3, most_cycles=20_000, relative=1e-3, absolute=1e-8)
+    assert row.beam_admissible and end.m == 4
     assert 0.5 * (end.held + end.lost) == pytest.approx(row.beam, rel=3e-3)
 
 
@@ -57,7 +57,7 @@ def test_the_hysteresis_starts_from_zero_at_the_upper_edge_of_each_band(letter_s
         assert band_of(letter_scene, m + 1).lower < edges.upper  # neighbours overlap
         assert max(rows[-1].map, rows[-1].eq1) < 1e-12
         assert falls([row.map for row in rows]) and falls([row.eq1 for row in rows])
-    assert {3, 4, 5, 6, 8, 11} <= {maximal_period(place) for place in path_of(letter_scene)}
+    assert {3, 4, 5, 6, 8, 11} <= {maximal_m(place) for place in path_of(letter_scene)}
 
 
 def test_the_branch_has_its_least_amplitude_at_the_fold_and_is_stable_above(letter_scene, fold, beam):

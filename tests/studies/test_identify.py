@@ -132,7 +132,7 @@ def test_what_a_record_cannot_determine_is_refused_in_a_sentence(made, name, kin
 
 def test_an_orbit_that_ends_inside_the_confidence_region_is_refused(made):
     fold = -1.4773e-3  # of p5, as the main table has it
-    orbit = MaximalFamily(oscillator=made["one_mode"], period=5).orbits(fold + 2e-7)[-1]
+    orbit = MaximalFamily(oscillator=made["one_mode"], m=5).orbits(fold + 2e-7)[-1]
     rows = (
         simulate(orbit.oscillator, orbit.state(), periods=40).strobe_displacement @ orbit.oscillator.model.phi
     )

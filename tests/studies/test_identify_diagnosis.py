@@ -177,7 +177,7 @@ def test_a_motion_that_does_not_repeat_is_fitted_as_such(scene_of_eq1, motion, n
     record, amplitude = measured(**motion, rest=True)
     found = fit(record, scene_of_eq1, ALL)
     right(found, amplitude)
-    assert found.problem.prediction.period == 0 and note in found.record.notes[-1]
+    assert found.problem.prediction.m == 0 and note in found.record.notes[-1]
 
 
 def test_without_impacts_the_linear_motion_is_the_answer(scene_of_eq1):
@@ -221,7 +221,7 @@ def test_a_search_needs_a_start_and_does_not_run_away_to_endless_oscillations(fi
 
 def test_residuals_that_repeat_with_the_orbit_contradict_a_fit(fitted):
     """Many weak lines that no autocorrelation shows; noise alone is as likely as it says."""
-    base = fitted.oscillator.driven.frequency / fitted.problem.prediction.period
+    base = fitted.oscillator.driven.frequency / fitted.problem.prediction.m
     random, times, lines = np.random.default_rng(3), fitted.record.rows[:, 0], np.arange(9, 80)
     noise = random.standard_normal(times.size)
     phases = 2.0 * np.pi * (np.outer(base * lines, times) + random.random((lines.size, 1)))

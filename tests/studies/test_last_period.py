@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from contact import StroboscopicMap
-from contact.orbits import born, cloud
+from contact.orbits import onset_orbit, strobe_covariance
 from studies.experiment.last_period.causes import causes_of
 from studies.experiment.last_period.changes import changed, changes_of, transitions_at
 from studies.experiment.last_period.clouds import apart, clouds_of, frequency_of, separate, since_impact
@@ -92,8 +92,8 @@ def test_strobe_points_run_together_as_m_grows(letter_scene, monkeypatch):
     noises = [DriveNoise(stability=sigma, correlation_s=time) for time in (0.0, 100.0)]
     for m in (6, 9, 13):
         strobed = StroboscopicMap(oscillator=single_mode_at(letter_scene, frequency_of(letter_scene, m)))
-        row, orbit = clouds_of(noises, ("Eq. (1)", strobed, m)), born(strobed).end
-        spread = cloud(strobed.at(1e-3), orbit, m, deviation=sigma)  # second route: covariances
+        row, orbit = clouds_of(noises, ("Eq. (1)", strobed, m)), onset_orbit(strobed).end
+        spread = strobe_covariance(strobed.at(1e-3), orbit, m, deviation=sigma)  # second route: covariances
         centre = strobed.tip(strobed.at(1e-3).orbit(orbit, m).points)
         order, width = np.argsort(centre), 3.29 * np.sqrt(spread[:, 0, 0])
         between = 0.5 * (width[order][1:] + width[order][:-1])

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from contact import band
+from contact import frequency_band
 from contact.orbits import MaximalFamily
 from studies.experiment.last_period import pairs
 from studies.experiment.last_period.pairs import intervals_of, is_born, longest
@@ -34,14 +34,14 @@ def test_the_maps_interval_has_its_ends_in_closed_form(rows, f, m):
     """f T = 2m/(2m+1) above; below, the band with that T begins at f."""
     found = rows[0.0, f"p{m}"]
     assert found.highest_s == pytest.approx(2 * m / ((2 * m + 1) * f), abs=1e-8)
-    edge = band(m, free_period=found.lowest_s, decay_rate=3.56, restitution=0.1).lower
+    edge = frequency_band(m, free_period=found.lowest_s, decay_rate=3.56, restitution=0.1).lower
     assert edge == pytest.approx(f, abs=1e-5)
 
 
 def exists(single, excess, frequency, period):
     """Whether Eq. (1) has a stable p_m, in closed form."""
     one = with_values(single, {"frequency": frequency, "free_period": period})
-    orbits = MaximalFamily(oscillator=one, period=PERIODS[frequency]).orbits(excess)
+    orbits = MaximalFamily(oscillator=one, m=PERIODS[frequency]).orbits(excess)
     return any(orbit.admissible and orbit.stable for orbit in orbits)
 
 

@@ -10,7 +10,9 @@ from studies import ROOT, letter
 from studies.shell.programs import CHAPTERS, chapter
 
 FILES = {"__init__", "__main__", "model", "figure"}
-FOLDERS = {name: path.parent for each in CHAPTERS for name, path in chapter(each).items() if path.stem != name}
+FOLDERS = {
+    name: path.parent for each in CHAPTERS for name, path in chapter(each).items() if path.stem != name
+}
 TEXTS = {
     ".".join(path.relative_to(ROOT / "studies").with_suffix("").parts): path.read_text("utf-8")
     for path in sorted((ROOT / "studies").rglob("*.py"))

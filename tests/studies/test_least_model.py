@@ -10,7 +10,7 @@ import pytest
 from oscillators import slow
 
 from contact import Chatter, HarmonicDrive, StroboscopicMap, first_collision
-from contact.orbits import Shooting, born, born_period, fold_of
+from contact.orbits import Shooting, fold_of, onset_m, onset_orbit
 from studies.experiment.hysteresis.__main__ import hysteresis
 from studies.experiment.time_trace.__main__ import conditions, time_trace
 from studies.experiment.transitions.__main__ import ends_beside_folds, transitions
@@ -37,8 +37,8 @@ def test_errors_of_folds_from_kicks_are_those_of_the_orbits_themselves(letter_sc
     whole, found = reference_of(letter_scene), {}
     for modes in (12, 40):
         oscillator = beam_at(letter_scene, frequency, whole.truncated(modes)).with_excess(1e-3)
-        period = born_period(StroboscopicMap(oscillator=oscillator))
-        found[modes] = fold_of(Shooting(oscillator=oscillator, period=period)).excess
+        period = onset_m(StroboscopicMap(oscillator=oscillator))
+        found[modes] = fold_of(Shooting(oscillator=oscillator, m=period)).excess
     error = abs(found[12] / found[40] - 1.0)
     here = letter_scene.replace({"drive.frequencies_hz": (frequency,)})
     (question,) = questions(here, {"fold": 0.0}, whole)
@@ -140,16 +140,16 @@ def drawn(seed: int) -> tuple[Scene, float, float]:
 
 def of_time_trace(scene, oscillator, excess):
     """Period and impacts of the settled motion; kick and restitution of a first collision."""
-    orbit = born(StroboscopicMap(oscillator=oscillator), excess)
+    orbit = onset_orbit(StroboscopicMap(oscillator=oscillator), excess)
     struck = first_collision(oscillator.with_excess(excess))
-    same = (orbit.period, orbit.period and orbit.impacts)
+    same = (orbit.m, orbit.m and orbit.impacts)
     return same, [(struck.kick, 0.005), (struck.restitution, 0.01)]
 
 
 def of_transitions(scene, oscillator, excess):
     """The born orbit, and its end in a downward scan.  A warning names an end that is no fold."""
     orbit, end = born_and_lowered(StroboscopicMap(oscillator=oscillator), 1e-3, 1000)
-    same = (orbit.period, orbit.period and orbit.impacts)
+    same = (orbit.m, orbit.m and orbit.impacts)
     fold = math.nan if end is None else end.excess
     row = SimpleNamespace(description="beam", frequency_hz=1.0, ends_by=end and end.kind)
     return same, [] if ends_beside_folds([row]) else [(fold, 0.07 * max(abs(fold), AMPLITUDE_STABILITY))]
@@ -158,7 +158,7 @@ def of_transitions(scene, oscillator, excess):
 def of_hysteresis(scene, oscillator, excess):
     """The fold of p5 where the letter has one, by shooting."""
     there = replace(oscillator, drive=HarmonicDrive(frequency=corresponding(scene, 22.2)))
-    fold = or_none(fold_of, Shooting(oscillator=there, period=5))
+    fold = or_none(fold_of, Shooting(oscillator=there, m=5))
     found = fold.excess if fold is not None and fold.admissible else math.nan
     return (), [(found, 0.05 * max(abs(found), AMPLITUDE_STABILITY))]
 

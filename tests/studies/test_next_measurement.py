@@ -38,14 +38,14 @@ def node(frequency, period, excess):
 def predicted(near, values):
     """What is measured at other values of the unknown, by shooting at that amplitude and simulation."""
     there = with_values(near.oscillator, dict(zip(PLAN.unknown, values.tolist(), strict=True)))
-    orbit = Shooting(oscillator=there, period=near.period).at_excess(there.excess, near)
-    run = simulate(orbit.oscillator, orbit.state(), periods=orbit.period)
+    orbit = Shooting(oscillator=there, m=near.m).at_excess(there.excess, near)
+    run = simulate(orbit.oscillator, orbit.state(), periods=orbit.m)
     return np.append(run.strobe_displacement[:, 0], there.grazing_amplitude()), orbit
 
 
 def scale(orbit):
     """Standard errors of what is measured."""
-    return np.append(np.full(orbit.period, 0.5e-6 * math.sqrt(orbit.period / 1000)), 0.5e-6)
+    return np.append(np.full(orbit.m, 0.5e-6 * math.sqrt(orbit.m / 1000)), 0.5e-6)
 
 
 @pytest.mark.parametrize(("f", "m", "excess"), [(21.50, 4, 4e-3), (22.20, 5, 5e-4)])
@@ -121,7 +121,7 @@ def test_the_best_places_outlive_their_errors_and_lie_apart(plane):
     assert [one.together for one in best] == sorted(one.together for one in best)
     assert min(abs(np.diff(sorted(one.frequency_hz for one in best)))) >= 0.3
     for one in best[:2]:
-        orbit, _ = node(one.frequency_hz, one.period, one.excess)
+        orbit, _ = node(one.frequency_hz, one.m, one.excess)
         sizes, (squares, axes) = design.sizes_of(orbit, PLAN), np.linalg.eigh(covariance([orbit], PLAN))
         for way in (-1, 1):
             for axis in axes.T * way * np.sqrt(squares)[:, None]:
@@ -132,7 +132,7 @@ def test_the_best_places_outlive_their_errors_and_lie_apart(plane):
 def test_the_errors_by_the_letters_orbits(plane):
     """T to 0.02 ms, and far better from p4 on; tau and delay by p4, or by two orbits of the same speed."""
     six = design.letters_orbits(of)
-    assert [orbit.period for orbit in six] == [3, 4, 5, 6, 8, 11]
+    assert [orbit.m for orbit in six] == [3, 4, 5, 6, 8, 11]
     alone = np.array([errors_of([orbit], PLAN) for orbit in six])
     assert alone[0, 0] > 0.02e-3 > 1.5e-6 > alone[1:, 0].max()
     assert alone[1, 1] == pytest.approx(0.0066, rel=0.05) and np.delete(alone[:, 1], 1).min() > 0.1

@@ -8,7 +8,7 @@ import pytest
 from oscillators import slow
 from scipy.special import gamma
 
-from contact.orbits import cloud
+from contact.orbits import strobe_covariance
 from studies.measurement.noise import __main__ as program
 from studies.measurement.noise.places import Place
 from studies.measurement.noise.rates import LAG, in_drift, law_of, mean_time, quantiles
@@ -176,7 +176,7 @@ def test_a_cloud_is_what_an_independent_program_found(place):
     here = place(3, 20.9)
     excess, gap = 0.5 * here.fold.excess, here.strobed.oscillator.stop.gap
     assert here.fold.excess == pytest.approx(-0.001278441, abs=1e-9)
-    found = cloud(here.strobed.at(excess), here.stable(excess), 3, deviation=1.0) / gap**2
+    found = strobe_covariance(here.strobed.at(excess), here.stable(excess), 3, deviation=1.0) / gap**2
     theirs = [[21.942, -25.042, 28.992], [6.050, 13.670, 36.819], [35.710, 3.5590, 1.3426]]
     ours = found[:, [0, 0, 1], [0, 1, 1]]
     shifts = [np.roll(ours, k, axis=0) for k in range(3)]

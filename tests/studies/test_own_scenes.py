@@ -51,7 +51,7 @@ def test_the_same_period_is_born_at_the_same_f_t(name):
     for frequency, period in list(periods_of(scene).items())[:2]:
         strobed = StroboscopicMap(oscillator=beam_at(scene, frequency, model).with_excess(1e-3))
         settled = settle(strobed, strobed.steady(), most_cycles=4000)
-        assert settled.period == period == contact.maximal_period(nordmark_at(scene, frequency))
+        assert settled.m == period == contact.maximal_m(nordmark_at(scene, frequency))
 
 
 def test_the_ruler_bounces_as_its_comment_says():
@@ -70,7 +70,7 @@ def test_the_letters_frequencies_are_its_own():
 @pytest.mark.slow
 def test_a_study_of_one_frequency_takes_the_corresponding_one(run_study):
     ran = run_study("time_trace", "--scene", "steel_ruler", "--set", KEPT)
-    assert ran.code == 0 and ran.summary["period"] == ran.summary["letter"] == 4
+    assert ran.code == 0 and ran.summary["m"] == ran.summary["letter"] == 4
     assert ran.summary["frequency_hz"] == pytest.approx(21.5 * 40.8 / 115.1, rel=1e-3)
 
 

@@ -23,7 +23,7 @@ def shown_in(folder, name):
 def test_the_orbit_keeps_its_four_branches_down_to_the_fold():
     shown = shown_in(pictures.PICTURES, "p4")
     beam = beam_at(pictures.SCENE, TIME_TRACE_HZ, model_of(pictures.SCENE))
-    fold, grazing = fold_of(Shooting(oscillator=beam, period=4)), 1e3 * beam.grazing_amplitude()
+    fold, grazing = fold_of(Shooting(oscillator=beam, m=4)), 1e3 * beam.grazing_amplitude()
     assert shown["grazing"] == pytest.approx(grazing, rel=1e-5)
     assert shown["fold"] == pytest.approx(grazing * (1.0 + fold.excess), rel=1e-5)
     for way, end in {"raised": grazing, "lowered": shown["fold"]}.items():

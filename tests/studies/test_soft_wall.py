@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from contact import StroboscopicMap, first_collision
-from contact.orbits import Shooting, born_period
+from contact.orbits import Shooting, onset_m
 from studies import letter
 from studies.experiment.soft_wall import figure
 from studies.experiment.soft_wall.closed_forms import SoftWall, hertz_doubling, hertz_kick
@@ -84,10 +84,10 @@ def test_beam_with_hertz_contact(frequency, turns):
     # raised in one step as by an experiment, there is no p1 to be seen at all
     strobed = StroboscopicMap(oscillator=oscillator)
     born = {21.5: 4, 22.2: 5}[frequency]
-    assert born_period(strobed, 0.3 * exact) == born_period(strobed, 2.0 * exact) == born
+    assert onset_m(strobed, 0.3 * exact) == onset_m(strobed, 2.0 * exact) == born
     # second route: just above, the simulated motion leaves the p1 on which it stays just below
     for factor, stays in ((0.95, True), (1.05, False)):
-        family = Shooting(oscillator=oscillator, period=1)
+        family = Shooting(oscillator=oscillator, m=1)
         orbit = family.at_excess(factor * lost, family.at_speed(1e-3 * oscillator.unit_speed))
         start = replace(orbit.strobe_state(), time=0.0)
         moved = replace(start, displacement=start.displacement * (1.0 + 1e-9))

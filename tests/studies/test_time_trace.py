@@ -8,7 +8,7 @@ from PIL import Image
 
 from contact import Collision, StroboscopicMap, first_collision
 from contact.collision import before_collision
-from contact.orbits import born
+from contact.orbits import onset_orbit
 from studies.experiment.time_trace.model import WORDS, SimulatedMap, close_up
 from studies.shell.painter import GRAPH_HEIGHT, HEIGHT, WIDTH
 from studies.shell.scene import beam_at, single_mode_of
@@ -18,7 +18,7 @@ def test_the_orbit_of_figure_4_the_ringing_of_its_impact_and_its_film(run_study)
     at_the_ball = "--set", "readout.arc_fraction=1.0"
     ran = run_study("time_trace", "--quick", *at_the_ball, "--film", "--frames", "8", "--style", "slide")
     summary = ran.summary
-    assert (ran.code, summary["period"], summary["impacts"]) == (0, 4, 1)
+    assert (ran.code, summary["m"], summary["impacts"]) == (0, 4, 1)
     times = summary["impact_times_s"]
     assert len(times) == 2 and times[1] - times[0] == pytest.approx(4 / 21.5, rel=1e-8)
     assert summary["rows"][0]["energy_to_higher_modes"] > 0.0
@@ -45,7 +45,7 @@ def test_the_orbit_of_figure_4_the_ringing_of_its_impact_and_its_film(run_study)
 def test_below_grazing_there_is_no_impact_and_one_line(run_study, letter_scene):
     ran = run_study("time_trace", "--excess", "-0.01")
     found, readout = ran.summary, ran.arrays("time_trace")["readout_m"]
-    assert (found["period"], found["impacts"], found["rows"]) == (1, 0, [])
+    assert (found["m"], found["impacts"], found["rows"]) == (1, 0, [])
     assert [round(peak["frequency_hz"], 6) for peak in found["peaks"]] == [21.5]
     assert found["peaks"][0]["amplitude"] == pytest.approx(0.5 * np.ptp(readout), rel=1e-3)
     kept = beam_at(letter_scene.replace({"modes.count": len(found["modes_hz"])}), 21.5)
@@ -66,7 +66,7 @@ def test_a_spring_between_two_plates_touches_both(run_study, tmp_path):
     options = "--quick", "--excess", "0.01", "--scene", str(scene), "--film", "--frames", "4"
     ran = run_study("time_trace", *options)
     summary, (time, tip) = ran.summary, (ran.arrays("time_trace")[name] for name in ("time_s", "tip_m"))
-    assert (ran.code, summary["period"], summary["impacts"], summary["letter"]) == (0, 7, 2, None)
+    assert (ran.code, summary["m"], summary["impacts"], summary["letter"]) == (0, 7, 2, None)
     assert [row["stop"] for row in summary["rows"]] == [int(row["stop"]) for row in ran.rows("impacts")]
     assert {row["stop"] for row in summary["rows"]} == {0, 1} and len(summary["rows"]) == 4
     assert all(row["approach"] > 0.0 > row["rebound"] > -row["approach"] for row in summary["rows"])
@@ -87,8 +87,8 @@ def test_the_simulated_map_is_the_period_map_of_one_stop(letter_scene):
     found, expected = simulated.orbit(start, 60), compiled.orbit(start, 60)
     assert found.impacts.tolist() == expected.impacts.tolist() and found.impacts.sum() > 5
     np.testing.assert_allclose(found.points, expected.points, atol=1e-9 * simulated.scale)
-    settled = [born(each, 0.013) for each in (simulated, compiled)]
-    assert settled[0].period == settled[1].period > 1 and settled[0].impacts == settled[1].impacts
+    settled = [onset_orbit(each, 0.013) for each in (simulated, compiled)]
+    assert settled[0].m == settled[1].m > 1 and settled[0].impacts == settled[1].impacts
 
 
 def driven(scene, law, excess):

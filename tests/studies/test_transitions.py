@@ -5,7 +5,7 @@ import json
 import pytest
 from oscillators import slow
 
-from contact.orbits import Shooting, born, born_period, fold_excess, fold_of, orbit_end, settle
+from contact.orbits import Shooting, fold_excess, fold_of, onset_m, onset_orbit, orbit_end, settle
 from contact.orbits.branches.amplitude_curve import whole_branch
 from studies.experiment.transitions.model import rows_at
 from studies.letter import PERIODS
@@ -21,7 +21,7 @@ EXPECTED = {20.90: 3, 21.50: 4, 22.20: 5, 22.60: 6, 23.05: 8, 23.40: 11}
 def test_all_descriptions_give_the_expected_period(letter_scene, letter_model, frequency):
     for name in TITLES:
         strobed = strobed_at(name, letter_scene, frequency, letter_model)
-        assert born_period(strobed, 1e-3) == EXPECTED[frequency], name
+        assert onset_m(strobed, 1e-3) == EXPECTED[frequency], name
 
 
 @pytest.mark.filterwarnings("ignore::beam.SuspiciousValue")
@@ -32,7 +32,7 @@ def test_no_period_of_the_letter_stands_beside_another_spring():
 
 def test_eq_1_and_the_beam_show_p10_above_grazing_where_the_letter_did(letter_scene, letter_model):
     for name in ("single_mode", "beam"):
-        assert born_period(strobed_at(name, letter_scene, 23.40, letter_model), 1e-2) == PERIODS[23.40]
+        assert onset_m(strobed_at(name, letter_scene, 23.40, letter_model), 1e-2) == PERIODS[23.40]
 
 
 @pytest.mark.parametrize("frequency", [20.90, *slow(*sorted(PERIODS.keys() - {20.90}))])
@@ -41,7 +41,7 @@ def test_the_orbits_end_where_the_closed_forms_say(letter_scene, letter_model, f
         strobed = strobed_at(name, letter_scene, frequency)
         exact = fold_excess(strobed, EXPECTED[frequency])
         assert fold_excess(strobed, 0) is fold_excess(strobed, 1) is None  # 0: the motion did not settle
-        end = orbit_end(strobed, born(strobed).end, 1e-3, most_cycles=1000)
+        end = orbit_end(strobed, onset_orbit(strobed).end, 1e-3, most_cycles=1000)
         assert end.lost <= exact <= end.held and end.held - end.lost <= 0.0101 * abs(end.held), name
         assert end.kind == "fold" and end.excess == pytest.approx(exact, rel=1e-10), name
 
@@ -53,10 +53,10 @@ def test_the_beams_p8_ends_where_another_touch_grazes(letter_scene, letter_model
     a thousand of the excess, as the peak over the wall is.
     """
     strobed = strobed_at("beam", letter_scene, 23.05, letter_model)
-    state = born(strobed).end
+    state = onset_orbit(strobed).end
     end = orbit_end(strobed, state, 1e-3, most_cycles=1000)
     assert end.kind == "grazing" and end.lost < end.excess < end.held
-    branch = whole_branch(Shooting(oscillator=strobed.oscillator, period=8), None)[2]
+    branch = whole_branch(Shooting(oscillator=strobed.oscillator, m=8), None)[2]
     lowest = min(branch.events, key=lambda event: event.orbit.excess)
     assert (lowest.kind, lowest.orbit.excess) == ("grazing", pytest.approx(end.excess, rel=1e-8))
     assert end.excess == pytest.approx(1.3799e-6, rel=1e-3)
@@ -64,7 +64,7 @@ def test_the_beams_p8_ends_where_another_touch_grazes(letter_scene, letter_model
     for excess in (2e-6, 1.39e-6, 1.37e-6, 1e-6, 3e-7, 1e-7):
         limits = dict(most_cycles=6000, tolerance=1e-3 * excess)
         settled = settle(strobed.at(excess), end.state, prove=False, **limits)
-        seen[excess] = settled.period, settled.impacts
+        seen[excess] = settled.m, settled.impacts
     assert seen == {2e-6: (8, 1), 1.39e-6: (8, 1), 1.37e-6: (8, 2), 1e-6: (1, 1), 3e-7: (1, 1), 1e-7: (1, 1)}
 
 
@@ -77,18 +77,18 @@ def test_the_small_form_of_one_frequency_and_own_modes_that_give_the_same_orbit(
     assert list(rows) == list(TITLES) == [row["description"] for row in ran.rows("transitions")]
     scene = read_scene("letter", ["modes.count=10"])
     model = model_of(scene)
-    fold = fold_of(Shooting(oscillator=beam_at(scene, 22.2, model), period=5))
+    fold = fold_of(Shooting(oscillator=beam_at(scene, 22.2, model), m=5))
     assert rows["beam"]["end_speed"] == pytest.approx(abs(fold.speed), rel=1e-4)
-    assert {(row["letter"], row["period"]) for row in rows.values()} == {(5, 5)}
+    assert {(row["letter"], row["m"]) for row in rows.values()} == {(5, 5)}
     assert rows["map"]["exact"] == pytest.approx(rows["map"]["excess_down"], rel=1e-9)
     assert ran.summary["modes"] == 10 and ran.verdicts["p5"] == "agrees"
     points = ran.rows("orbit_diagram")
     beams = [row for row in points if row["description"] == "beam"]
-    assert {row["period"] for row in beams if row["direction"] == "down"} <= {"0", "1", "5"}
+    assert {row["m"] for row in beams if row["direction"] == "down"} <= {"0", "1", "5"}
     scan = [row for row in beams if row["direction"] == "up"]
     assert len({row["excess"] for row in scan}) == 9 and float(scan[0]["excess"]) < 0.0
     strobes = [row["strobe"] for row in scan if row["excess"] == scan[-1]["excess"]]
-    assert scan[-1]["period"] == "5" and strobes == ["0", "1", "2", "3", "4"]
+    assert scan[-1]["m"] == "5" and strobes == ["0", "1", "2", "3", "4"]
     top = max(float(row["amplitude_m"]) / (1.0 + float(row["excess"])) for row in points)
     assert top == pytest.approx(max(row["grazing_amplitude"] for row in rows.values()), rel=1e-12)
     lists = (model.frequencies_hz, model.decay_rate, model.phi, model.participation)
@@ -96,5 +96,5 @@ def test_the_small_form_of_one_frequency_and_own_modes_that_give_the_same_orbit(
     given += "spring.kind=modal_data", "modes.count=10", f"modal_data.tip_mass_kg={scene.tip.mass_kg}"
     ran = run_study("transitions", "--quick", *(f"--set={key}" for key in given))
     *_, row = ran.summary["rows"]
-    assert ran.code == 0 and (row["description"], row["period"]) == ("beam", 5)
+    assert ran.code == 0 and (row["description"], row["m"]) == ("beam", 5)
     assert row["excess_down"] == pytest.approx(rows["beam"]["excess_down"], rel=1e-9)

@@ -10,7 +10,7 @@ import pytest
 from oscillators import slow
 
 from contact import StroboscopicMap, first_collision, simulate
-from contact.orbits import KickFamily, born, born_period, orbit_end
+from contact.orbits import KickFamily, onset_m, onset_orbit, orbit_end
 from studies import letter
 from studies.experiment.transitions.model import rows_at
 from studies.physics import two_parameters
@@ -42,14 +42,14 @@ def test_no_touch_is_held_longer_than_it_would_be_behind_the_wall(letter_scene, 
 def test_the_orbit_ends_where_the_kicks_of_the_beam_say(letter_scene, letter_model, frequency, m):
     """Simulated with restitution and delay, and without simulation by kick and shift of each collision."""
     strobed = StroboscopicMap(oscillator=two_parameters_at(letter_scene, frequency, letter_model))
-    settled = born(strobed, 1e-3, most_cycles=2000)
-    assert (settled.period, settled.impacts) == (m, 1)
+    settled = onset_orbit(strobed, 1e-3, most_cycles=2000)
+    assert (settled.m, settled.impacts) == (m, 1)
     end = orbit_end(strobed, settled.end, 1e-3, most_cycles=2000)
-    by_law = KickFamily(oscillator=strobed.oscillator, period=m).fold()
+    by_law = KickFamily(oscillator=strobed.oscillator, m=m).fold()
     assert end.kind == "fold" and end.excess == pytest.approx(by_law.excess, rel=1e-8)
-    by_kicks = fold_of_kicks(KickFamily(oscillator=beam_at(letter_scene, frequency, letter_model), period=m))
+    by_kicks = fold_of_kicks(KickFamily(oscillator=beam_at(letter_scene, frequency, letter_model), m=m))
     assert end.excess == pytest.approx(by_kicks, rel=0.01)
-    found = extracted(letter_scene, frequency, letter_model, end=settled.end, period=m)
+    found = extracted(letter_scene, frequency, letter_model, end=settled.end, m=m)
     assert found.fold == by_kicks and found.map == m
     run = simulate(strobed.oscillator.with_excess(1e-3), settled.end, periods=m)
     assert run.impacts.approach == pytest.approx([found.approach_m_per_s], rel=1e-6)
@@ -68,7 +68,7 @@ def test_the_orbit_ends_where_the_kicks_of_the_beam_say(letter_scene, letter_mod
 def test_they_have_the_beams_periods_and_its_p8_ends_by_the_same_graze(letter_scene, letter_model):
     for frequency, m in list(letter.PERIODS.items())[:5]:
         strobed = StroboscopicMap(oscillator=two_parameters_at(letter_scene, frequency, letter_model))
-        assert [born_period(strobed, excess, most_cycles=2000) for excess in (2.5e-4, 1e-3)] == [m, m]
+        assert [onset_m(strobed, excess, most_cycles=2000) for excess in (2.5e-4, 1e-3)] == [m, m]
     at = rows_at(letter_scene, 23.05, letter_model)
     two, beam = (row for row in at.rows if row.description in ("two_parameters", "beam"))
     assert not at.failures and two.ends_by == beam.ends_by == "grazing"
@@ -91,5 +91,5 @@ def test_collisions_without_restitution_are_left_out(letter_scene, letter_model,
     with pytest.raises(SceneError, match=r"contact.law leaves mode 1 a restitution in 0 of 45"):
         law_of(beam)
     at = rows_at(letter_scene, 22.2, letter_model)
-    assert [row.period for row in at.rows] == [5, 5, None, 5] and at.extracted is None
+    assert [row.m for row in at.rows] == [5, 5, None, 5] and at.extracted is None
     assert [where for where, _ in at.failures] == ["22.2 Hz, two_parameters"]

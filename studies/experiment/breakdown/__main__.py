@@ -23,7 +23,7 @@ from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import Annotated
 
-from contact import maximal_period
+from contact import maximal_m
 from studies import letter
 from studies.experiment.breakdown.model import (
     BORN_PERIOD,
@@ -101,13 +101,13 @@ def breakdown(
     born = figure.draw_born(cells, scene.tip.mass_kg, found, letters=run.letters)
     run.figure("born_period", born, figure.BORN)
     findings(run, outcomes[1], found, known[taus.index(tau)])
-    judge(run, maximal_period(nordmark), outcomes, found, known)
+    judge(run, maximal_m(nordmark), outcomes, found, known)
     return {
         "excess_of_letters_chaos_as_rho": nordmark.excess(CHAOS_AT),
         "islands": known,
         "rows": outcomes,
         "found": found,
-        "cells_with_period_6": [cell for cell in cells if cell.period == BORN_PERIOD],
+        "cells_with_period_6": [cell for cell in cells if cell.m == BORN_PERIOD],
     }
 
 
@@ -124,7 +124,7 @@ def search(scene: Scene, run: Run) -> tuple[list[Cell], list[Spring]]:
     cells = [cell for cell in found if cell is not None]
     words = "Period that begins at grazing, by what is not printed."
     run.table("born_period", cells, words, of=Cell, show=())
-    with_6 = [one for one, cell in zip(springs, found, strict=True) if cell and cell.period == BORN_PERIOD]
+    with_6 = [one for one, cell in zip(springs, found, strict=True) if cell and cell.m == BORN_PERIOD]
     return cells, nearest_first(with_6, scene.tip.mass_kg)
 
 

@@ -78,11 +78,11 @@ def draw_born(cells: Sequence[Cell], mass: float, found: Outcome | None, *, lett
     looks = {0: ("0.87", "no period up to 64"), 3: (SKY, "p$_3$")}
     looks[int(BORN_PERIOD)] = ORANGE, f"p$_{{{BORN_PERIOD}}}$" + ", as in the letter" * letters
     framed = None if found is None else (found.tip_mass_kg, found.higher_damping)
-    for cell in sorted(cells, key=lambda cell: cell.period):
+    for cell in sorted(cells, key=lambda cell: cell.m):
         x, y = factors.index(cell.higher_damping), masses.index(cell.tip_mass_kg)
-        colour, words = looks.get(cell.period, (tint(GREEN, 0.2), "another period"))
+        colour, words = looks.get(cell.m, (tint(GREEN, 0.2), "another period"))
         axis.add_patch(Rectangle((x - 0.46, y - 0.44), 0.92, 0.88, facecolor=colour, label=words))
-        axis.text(x, y, str(cell.period or "–"), ha="center", va="center", fontsize=NOTE)
+        axis.text(x, y, str(cell.m or "–"), ha="center", va="center", fontsize=NOTE)
         if framed == (cell.tip_mass_kg, cell.higher_damping):
             frame: plotting.Style = {"fill": False, "linewidth": 1.2, "label": "framed: its scans are drawn"}
             axis.add_patch(Rectangle((x - 0.46, y - 0.44), 0.92, 0.88, **frame))

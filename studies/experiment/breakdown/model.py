@@ -14,7 +14,7 @@ import numpy as np
 
 from beam import ModalModel
 from contact import HarmonicDrive, ImpactOscillator, Stop, StroboscopicMap
-from contact.orbits import Shooting, born, born_period, fold_excess, orbit_diagram
+from contact.orbits import Shooting, fold_excess, onset_m, onset_orbit, orbit_diagram
 from studies import letter
 from studies.physics.calibration import calibrate, calibrate_thickness
 from studies.physics.descriptions import Diagram, fold_orbit, or_none, up_and_down
@@ -95,17 +95,17 @@ class Cell:
 
     tip_mass_kg: Annotated[float, "mass of ball and mount [kg]"]
     higher_damping: Annotated[float, "factor on the damping of the higher modes"]
-    period: Annotated[int, "born period; 0 for none up to 64"]
+    m: Annotated[int, "born period; 0 for none up to 64"]
     impacts: Annotated[int, "impacts in a period"]
 
 
 def cell_of(spring: Spring) -> Cell:
     """One cell of the search."""
-    settled = born(spring.strobed(), BORN_EXCESS, most_cycles=SEARCH_CYCLES)
+    settled = onset_orbit(spring.strobed(), BORN_EXCESS, most_cycles=SEARCH_CYCLES)
     return Cell(
         tip_mass_kg=spring.tip_mass_kg,
         higher_damping=spring.higher_damping,
-        period=settled.period,
+        m=settled.m,
         impacts=settled.impacts,
     )
 
@@ -164,13 +164,13 @@ def scanned(
     counts = {"settle_cycles": cycles, "record_cycles": letter.STROBE_POINTS}
     ways = up_and_down(strobed, values, **counts, early=early)
     down = ways["down"]
-    on_p3 = down.excess[(down.period == 3) & (down.impacts == 1)].tolist() or [None]
+    on_p3 = down.excess[(down.m == 3) & (down.impacts == 1)].tolist() or [None]
     struck = down.excess[down.impacts > 0].tolist() or [None]
     outcome = Outcome(
         description=name,
         tip_mass_kg=spring.tip_mass_kg or None,
         higher_damping=spring.higher_damping,
-        born_period=born_period(strobed, BORN_EXCESS, most_cycles=cycles),
+        born_period=onset_m(strobed, BORN_EXCESS, most_cycles=cycles),
         fold_p3=fold,
         p3_first=on_p3[0],
         p3_last=on_p3[-1],
@@ -181,7 +181,7 @@ def scanned(
 
 def periods(diagram: Diagram) -> np.ndarray:
     """Periods of a scan; a motion without impacts is p1, even while it has not quite come to rest."""
-    return np.where((diagram.impacts == 0) & (np.array(diagram.kind) != "failed"), 1, diagram.period)
+    return np.where((diagram.impacts == 0) & (np.array(diagram.kind) != "failed"), 1, diagram.m)
 
 
 def island(scene: Scene, restitution: float, *, step: float = ISLAND_STEP) -> tuple[Island, Diagram]:
@@ -193,7 +193,7 @@ def island(scene: Scene, restitution: float, *, step: float = ISLAND_STEP) -> tu
     strobed = single_mode(scene, restitution).strobed()
     fold = fold_orbit(strobed.oscillator, 3)
     assert fold is not None  # f T lies in the band of p3
-    orbit = Shooting(oscillator=strobed.oscillator, period=3).at_speed(1.02 * fold.speed)
+    orbit = Shooting(oscillator=strobed.oscillator, m=3).at_speed(1.02 * fold.speed)
     whole = orbit_diagram(
         strobed,
         np.arange(orbit.excess, 0.0, step),
@@ -204,7 +204,7 @@ def island(scene: Scene, restitution: float, *, step: float = ISLAND_STEP) -> tu
     )
     free = np.flatnonzero((whole.impacts == 0) & (np.array(whole.kind) != "failed"))
     kept = slice(0, int(free[0]) if free.size else None)
-    columns = ("excess", "points", "period", "impacts", "cycles")
+    columns = ("excess", "points", "m", "impacts", "cycles")
     diagram = replace(whole, **{name: getattr(whole, name)[kept] for name in columns})
     end = float(diagram.excess[-1]) if diagram.excess.size else fold.excess  # lost with the first step
     return Island(restitution=restitution, fold_p3=fold.excess, end=end), diagram

@@ -144,7 +144,7 @@ def drawn(
     run.arrays(f"chart_{model}", holds, frequency_hz=frequencies, excess=excesses, **cells)
     run.table(f"folds_{model}", folds, "Exact folds of p_m orbits with one impact.", of=Fold, show=())
     run.figure(f"chart_{model}", draw(plane, cells, edges, folds, TITLES[model]), CAPTION)
-    without = float(np.mean(cells["period"] == 0))
+    without = float(np.mean(cells["m"] == 0))
     run.say(f"{100 * without:.1f} % of the cells without a period up to {LARGEST_PERIOD}")
     if without > 0.0:
         name = "beam" if model == "beam" else "motion of Eq. (1)"
@@ -198,7 +198,7 @@ def basins(scene: Scene, run: Run, f: float, side: int) -> Mapping[str, object]:
     holds = "Starts, x [m] and velocity [m/s]; the period each leads to (0: another, -1: behind the stop)."
     run.arrays("basins", holds, x=plane.x, velocity=plane.velocity, leads=leads)
     run.figure("basins", figure.draw_basins(plane, leads, f), figure.BASINS)
-    period, shares = plane.period, settled.parts(leads, plane.period)
+    period, shares = plane.m, settled.parts(leads, plane.m)
     both = period > 1 and shares[f"p{period}"] > 0.0  # p1 without impacts is stable below grazing
     if both:
         share = written(100.0 * shares[f"p{period}"], 3)
@@ -211,4 +211,4 @@ def basins(scene: Scene, run: Run, f: float, side: int) -> Mapping[str, object]:
         note=f"at excess {written(settled.EXCESS)} the start decides which of them is reached",
         figure="basins",
     )
-    return {"basins": {"excess": settled.EXCESS, "period": period, "parts": shares}}
+    return {"basins": {"excess": settled.EXCESS, "m": period, "parts": shares}}

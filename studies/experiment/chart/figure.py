@@ -69,7 +69,7 @@ def draw(
     x, y = plane.frequencies(), sheared(plane.rising_excesses())
     names = ["", *CLASSES.values()]
     for k, way in enumerate(("upward scan", "downward scan")):
-        period, impacts = cells["period"][k], cells["impacts"][k]
+        period, impacts = cells["m"][k], cells["impacts"][k]
         capped = np.where(impacts == 0, 0, np.minimum(period, len(PERIODS) - 1))
         classes = np.searchsorted(list(CLASSES), impacts, side="right")
         for axis, colours, places in ((axes[0, k], PERIODS, capped), (axes[1, k], IMPACTS, classes)):
@@ -87,13 +87,13 @@ def draw(
     for axis in axes[:, 0]:
         axis.set_yticks(sheared(TICKS), [written(t) for t in TICKS])
         plotting.label(axis.yaxis, plotting.EXCESS)
-    hit = (cells["impacts"] > 0) & (cells["period"] > 0)
-    seen = set(np.minimum(cells["period"][hit], len(PERIODS) - 1).tolist())
+    hit = (cells["impacts"] > 0) & (cells["m"] > 0)
+    seen = set(np.minimum(cells["m"][hit], len(PERIODS) - 1).tolist())
     texts = {m: f"p$_{{{m}}}$" for m in range(len(PERIODS) - 1)} | {
         len(PERIODS) - 1: f"{len(PERIODS) - 1} to 64"
     }
-    failed = bool(np.any(cells["period"] < 0))
-    _key(axes[0, 1], "period", {texts[m]: PERIODS[m] for m in sorted(seen)}, failed)
+    failed = bool(np.any(cells["m"] < 0))
+    _key(axes[0, 1], "m", {texts[m]: PERIODS[m] for m in sorted(seen)}, failed)
     seen = set(np.searchsorted(list(CLASSES), cells["impacts"][hit], side="right").tolist())
     _key(axes[1, 1], "impacts", {names[k]: IMPACTS[k] for k in sorted(seen)}, failed)
     plotting.legend_below(figure, axes.flat, 4)
@@ -129,14 +129,14 @@ def _draw_theory(axis: Axes, edges: Sequence[Band], folds: Sequence[Fold]) -> No
     """Grazing, the band edges there, and the folds."""
     axis.axhline(0.0, color="0.5", linewidth=0.6, label="grazing")
     for name, place, marker in (("upper", EDGE, "v"), ("lower", -EDGE, "^")):
-        places = [getattr(band, name) for band in edges if band.period <= MARKED]
+        places = [getattr(band, name) for band in edges if band.m <= MARKED]
         look: plotting.Style = {"color": "black", "markeredgecolor": "white", "linestyle": "none"}
         height = np.full(len(places), sheared(place))
         axis.plot(
             places, height, marker=marker, markersize=4, **look, label=f"{name} band edge, map (m ≤ {MARKED})"
         )
-    for period in sorted({fold.period for fold in folds}):
-        curve = [fold for fold in folds if fold.period == period]
+    for period in sorted({fold.m for fold in folds}):
+        curve = [fold for fold in folds if fold.m == period]
         f, excess = [fold.frequency_hz for fold in curve], sheared([fold.excess for fold in curve])
         axis.plot(f, excess, color="white", linewidth=1.8)
         axis.plot(f, excess, color="black", linewidth=0.9, label="exact fold of p$_m$")
@@ -168,7 +168,7 @@ def draw_scan(
         for way, look in (("up", plotting.UP), ("down", plotting.DOWN)):
             mine = [k for k, row in enumerate(rows) if (row.model, row.direction) == (name, way)]
             excess, points = np.array([rows[k].excess for k in mine]), np.array([strobes[k] for k in mine])
-            settled = np.array([rows[k].period > 0 for k in mine])
+            settled = np.array([rows[k].m > 0 for k in mine])
             words = f"{way}ward scan", "pale: not periodic"
             plotting.strobe_points(upper, 1e2 * excess, 1e3 * points, settled, look, *words)
         for kind, (marker, colour) in LOOKS.items():
@@ -192,7 +192,7 @@ def draw_scan(
 def draw_basins(plane: Starts, leads: np.ndarray, frequency: float) -> Figure:
     """The strobe plane, coloured by where its points lead."""
     figure, axis = plotting.new_figure(height=0.088)
-    oscillator, m = plane.strobed.oscillator, plane.period
+    oscillator, m = plane.strobed.oscillator, plane.m
     gap, speed = oscillator.stop.gap, oscillator.unit_speed
     looks = {
         m: (plotting.BLUE, f"to p$_{{{m}}}$"),

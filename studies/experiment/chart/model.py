@@ -75,7 +75,7 @@ def column_at(frequency: float, scan: AmplitudeScan, plane: Plane) -> Column:
         "frequency_hz": np.array(frequency),
         "direction": np.array(DIRECTIONS)[:, None],
         "excess": excesses,
-        "period": found.period,
+        "m": found.m,
         "impacts": found.impacts,
         "cycles": found.cycles,
         "reason": found.reason,
@@ -86,7 +86,7 @@ def column_at(frequency: float, scan: AmplitudeScan, plane: Plane) -> Column:
 class Fold:
     """The exact end of a p_m orbit with one impact."""
 
-    period: int
+    m: int
     frequency_hz: float
     excess: float
 
@@ -96,7 +96,7 @@ def side_by_side(columns: Sequence[Column]) -> dict[str, NDArray[np.int32]]:
     (2, n_frequencies, n_excesses): upward scan first, excesses rise in both; -1 where a cell failed."""
     return {
         name: np.stack([column[name] for column in columns], axis=1).astype(np.int32)
-        for name in ("period", "impacts", "cycles")
+        for name in ("m", "impacts", "cycles")
     }
 
 
@@ -119,7 +119,7 @@ def folds_of_single_mode(oscillator: ImpactOscillator, frequencies: np.ndarray, 
         for period in range(2, LARGEST + 1):
             fold = fold_orbit(here, period)
             if fold is not None and fold.excess > lowest and fold.admissible:
-                found.append(Fold(period=period, frequency_hz=frequency, excess=fold.excess))
+                found.append(Fold(m=period, frequency_hz=frequency, excess=fold.excess))
     return found
 
 
@@ -144,9 +144,9 @@ def folds_of_beam(
         if inside.size < FEWEST:
             inside = np.union1d(inside, np.linspace(low, high, FEWEST))
         middle = inside.size // 2
-        family = Shooting(oscillator=_driven(oscillator, float(inside[middle])), period=band.period)
+        family = Shooting(oscillator=_driven(oscillator, float(inside[middle])), m=band.m)
         for way in (inside[middle::-1], inside[middle + 1 :]):
             for frequency, fold in zip(way.tolist(), fold_along_frequency(family, way), strict=True):
                 if isinstance(fold, PeriodicOrbit) and fold.admissible and fold.excess > lowest:
-                    found.append(Fold(period=band.period, frequency_hz=frequency, excess=fold.excess))
-    return sorted(found, key=lambda one: (one.period, one.frequency_hz))
+                    found.append(Fold(m=band.m, frequency_hz=frequency, excess=fold.excess))
+    return sorted(found, key=lambda one: (one.m, one.frequency_hz))

@@ -17,7 +17,7 @@ from typing import Annotated, Any
 import numpy as np
 
 from contact import ContactError, State, StroboscopicMap
-from contact.orbits import Exponents, Settled, born, map_exponents, orbit_exponents, settle
+from contact.orbits import Exponents, Settled, map_exponents, onset_orbit, orbit_exponents, settle
 from studies.physics.descriptions import TITLES, both_ways
 from studies.shell.scene import READOUT, Scene, single_mode_at
 
@@ -41,7 +41,7 @@ class Settlement:
     direction: Annotated[str, "direction of the scan"]
     excess: float
     kind: Annotated[str, "kind of motion"]
-    period: int
+    m: int
     impacts: Annotated[int, "impacts in a period"]
     lyapunov_map: Annotated[float, "largest Lyapunov exponent per drive period"]
     error_map: Annotated[float, "standard error of the exponent"]
@@ -49,9 +49,9 @@ class Settlement:
 
 def kind_of(strobed: StroboscopicMap, settled: Settled[State], cycles: int) -> tuple[str, Exponents]:
     """The kind of motion, and its exponents: averages over `cycles` drive periods where it has no period."""
-    if settled.period:
+    if settled.m:
         kind = PERIODIC if settled.impacts else WITHOUT
-        return kind, orbit_exponents(strobed, settled.end, settled.period)
+        return kind, orbit_exponents(strobed, settled.end, settled.m)
     exponents, _end = map_exponents(strobed, settled.end, cycles, align=ALIGN)
     if abs(exponents.largest) <= SIGNIFICANT * exponents.error:
         return UNDECIDED, exponents
@@ -80,8 +80,8 @@ def carried(
                 failures.append(f"{TITLES[name]}, excess {excess:.6g}, {direction}: {error}")
                 continue
             points.append(here.readout(orbit.points, READOUT))
-            impacts = settled.impacts if settled.period else 0
-            found: dict[str, Any] = {"period": settled.period, "impacts": impacts}
+            impacts = settled.impacts if settled.m else 0
+            found: dict[str, Any] = {"m": settled.m, "impacts": impacts}
             found |= {"lyapunov_map": exponents.largest, "error_map": exponents.error}
             rows.append(Settlement(model=name, direction=direction, excess=excess, kind=kind, **found))
         return None, state
@@ -117,13 +117,13 @@ class Starts:
     near: float
 
     @property
-    def period(self) -> int:
+    def m(self) -> int:
         """m of p_m; 1 if there is none beside p1."""
         return max(self.orbits)
 
-    def strobes(self, period: int) -> np.ndarray:
+    def strobes(self, m: int) -> np.ndarray:
         """Strobe points of an orbit, x [m] and x' [m/s], shape (period, 2)."""
-        return self.orbits[period] * (1.0, float(self.strobed.oscillator.model.omega[0]))
+        return self.orbits[m] * (1.0, float(self.strobed.oscillator.model.omega[0]))
 
     def leads(self, x: float, velocity: float) -> int:
         """Where a start leads: 1 motion without impacts, m for p_m, 0 something else, -1 behind the wall."""
@@ -146,10 +146,10 @@ class Starts:
         return [self.leads(float(x), velocity) for x in self.x]
 
 
-def parts(leads: np.ndarray, period: int) -> dict[str, float]:
+def parts(leads: np.ndarray, m: int) -> dict[str, float]:
     """Part of the starts before the wall that leads to each motion, p_m that of `period`."""
     before = leads[leads >= 0]
-    names = {period: f"p{period}", 0: "something else", 1: "p1 without impacts"}
+    names = {m: f"p{m}", 0: "something else", 1: "p1 without impacts"}
     return {name: float(np.mean(before == code)) for code, name in names.items()}
 
 
@@ -157,11 +157,11 @@ def plane_of(scene: Scene, frequency: float, side: int, excess: float = EXCESS) 
     """`side` by `side` starts on the strobe plane at drive `frequency` [Hz]."""
     strobed = StroboscopicMap(oscillator=single_mode_at(scene, frequency))
     here = strobed.at(excess)
-    end = settle(here, born(strobed, most_cycles=MOST_PERIODS).end, most_cycles=MOST_PERIODS)
+    end = settle(here, onset_orbit(strobed, most_cycles=MOST_PERIODS).end, most_cycles=MOST_PERIODS)
     rest, gap, speed = here.coordinates(here.steady()), here.scale, here.oscillator.unit_speed
     return Starts(
         strobed=here,
-        orbits={max(end.period, 1): end.points[-max(end.period, 1) :], 1: rest[None]},
+        orbits={max(end.m, 1): end.points[-max(end.m, 1) :], 1: rest[None]},
         near=gap * min(NEAR, -OF_EXCESS * excess),
         x=np.linspace(-FAR, 1.0, side) * gap,
         velocity=FAR * speed * np.linspace(-1.0, 1.0, side),

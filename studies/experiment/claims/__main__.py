@@ -25,7 +25,7 @@ from typing import Annotated
 
 import numpy as np
 
-from contact import MapFamily, NordmarkMap, maximal_period, maximal_periods
+from contact import MapFamily, NordmarkMap, coexisting_m, maximal_m
 from studies import letter
 from studies.experiment.claims.model import (
     RESTITUTIONS,
@@ -132,7 +132,7 @@ def universality(scene: Scene, run: Run, *, positions: int) -> Mapping[str, obje
     rows, excess = born_everywhere(scene, run, positions), scene.scan.born_excess
     words = "Periods that begin at grazing on several springs, and in the map."
     run.table("universality", rows, words, of=Born, show=())
-    failed = any(row.period is None for row in rows)
+    failed = any(row.m is None for row in rows)
     agree = {
         name: float(np.mean([row.agrees for row in rows if row.spring == name]))
         for name in dict.fromkeys(row.spring for row in rows)
@@ -168,15 +168,15 @@ def born_everywhere(scene: Scene, run: Run, count: int) -> list[Born]:
     for job, period in zip(jobs, born, strict=True):
         frequency = job.f_times_t / scene.single_mode.free_period_s
         nordmark = nordmark_at(scene, frequency)
-        edges = band_of(scene, maximal_period(nordmark))
+        edges = band_of(scene, maximal_m(nordmark))
         part = (frequency - edges.lower) / (edges.upper - edges.lower)
         rows.append(
             Born(
                 spring=job.spring,
                 f_times_t=job.f_times_t,
-                period=period,
-                map=maximal_period(nordmark),
-                also=maximal_period(nordmark) + 1 if len(maximal_periods(nordmark)) > 1 else None,
+                m=period,
+                map=maximal_m(nordmark),
+                also=maximal_m(nordmark) + 1 if len(coexisting_m(nordmark)) > 1 else None,
                 next_to_edge=part >= TOP,
             )
         )

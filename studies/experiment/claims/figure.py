@@ -33,7 +33,7 @@ def draw_loss(
         for number, frequency in enumerate(sorted({row.frequency_hz for row in rows})):
             mine = [row for row in rows if row.frequency_hz == frequency]
             curve = [row.restitution for row in mine], [1e2 * value(row) for row in mine]
-            name = f"{frequency:.2f} Hz, p$_{{{mine[0].period}}}$"
+            name = f"{frequency:.2f} Hz, p$_{{{mine[0].m}}}$"
             axis.plot(*curve, markevery=3, **plotting.series(number % 8), label=name)
     axes[1, 1].plot(tau, 1e2 * below, color=plotting.BLUE)
     axes[1, 0].axhline(0.0, **plotting.GUIDE, label="grazing")

@@ -20,8 +20,8 @@ import numpy as np
 from scipy.optimize import bisect
 
 from beam import ModalModel
-from contact import MapFamily, MaximalFamily, NordmarkMap, maximal_period
-from contact.orbits import Orbit, born_period
+from contact import MapFamily, MaximalFamily, NordmarkMap, maximal_m
+from contact.orbits import Orbit, onset_m
 from studies.physics.calibration import bare_cantilever, with_mass_ratio
 from studies.physics.descriptions import falls, strobed_at
 from studies.shell.scene import Scene, model_of, nordmark_at, single_mode_at, single_mode_of
@@ -42,7 +42,7 @@ class Node:
     """The node p_m at one frequency and restitution, by the map and by Eq. (1); NaN without a fold."""
 
     frequency_hz: float
-    period: int
+    m: int
     restitution: float
     rho: Annotated[float, "ρ_m of the map"]
     fold_of_map: Annotated[float, "fold of the map, F/F_g − 1"]
@@ -57,9 +57,9 @@ def has_one_impact(orbit: Orbit) -> bool:
     return orbit.admissible and orbit.stable
 
 
-def family_at(scene: Scene, frequency: float, period: int) -> MaximalFamily:
+def family_at(scene: Scene, frequency: float, m: int) -> MaximalFamily:
     """The orbits p_m of Eq. (1), m = `period`, at a drive frequency [Hz]."""
-    return MaximalFamily(oscillator=single_mode_at(scene, frequency), period=period)
+    return MaximalFamily(oscillator=single_mode_at(scene, frequency), m=m)
 
 
 def end_speed(family: MaximalFamily, fold: Orbit) -> float:
@@ -74,23 +74,23 @@ def end_speed(family: MaximalFamily, fold: Orbit) -> float:
     )
 
 
-def end_of_map(nordmark: NordmarkMap, period: int) -> float:
+def end_of_map(nordmark: NordmarkMap, m: int) -> float:
     """The excess of that of the map; NaN where p_m is not stable."""
-    top = (MapFamily(nordmark, period).stable_range() or (math.nan, math.nan))[1]
+    top = (MapFamily(nordmark, m).stable_range() or (math.nan, math.nan))[1]
     return nordmark.excess(top) if math.isfinite(top) else top
 
 
 def node_at(scene: Scene, frequency: float) -> Node:
     """The node of the period that belongs to this frequency."""
     nordmark = nordmark_at(scene, frequency)
-    m = maximal_period(nordmark)
+    m = maximal_m(nordmark)
     family, of_map = family_at(scene, frequency, m), MapFamily(nordmark, m).fold()
     least, end = family.fold(), math.nan
     if least is not None and least.admissible:
         end = end_speed(family, least)
     return Node(
         frequency_hz=frequency,
-        period=m,
+        m=m,
         restitution=nordmark.restitution,
         rho=math.nan if of_map is None else of_map.rho,
         fold_of_map=math.nan if of_map is None else of_map.excess,
@@ -113,7 +113,7 @@ def below_grazing(scene: Scene, frequencies: Sequence[float], restitution: float
     changed, gone, ends = scene.replace({"single_mode.restitution": restitution}), [], []
     for frequency in frequencies:
         nordmark = nordmark_at(changed, frequency)
-        m = maximal_period(nordmark)
+        m = maximal_m(nordmark)
         at_grazing = family_at(changed, frequency, m).orbits(0.0)  # it has moved past its fold, if it has one
         gone.append(bool(at_grazing) and not has_one_impact(at_grazing[-1]))
         ends.append(end_of_map(nordmark, m))
@@ -137,7 +137,7 @@ class Born:
 
     spring: str
     f_times_t: Annotated[float, "f T"]
-    period: Annotated[int | None, "born period; 0 where the motion did not settle"]
+    m: Annotated[int | None, "born period; 0 where the motion did not settle"]
     map: Annotated[int, "period of the map as ρ goes to 0; 0 for none"]
     also: Annotated[int | None, "second period of the map, where bands overlap"]
     next_to_edge: Annotated[bool, "in the upper quarter of the band"]
@@ -146,11 +146,11 @@ class Born:
     @property
     def agrees(self) -> bool:
         """Whether the map has this period."""
-        return self.has(self.period)
+        return self.has(self.m)
 
-    def has(self, period: int | None) -> bool:
+    def has(self, m: int | None) -> bool:
         """Whether this is a period of the map."""
-        return bool(period) and period in (self.map, self.also)
+        return bool(m) and m in (self.map, self.also)
 
 
 class Job(NamedTuple):
@@ -188,4 +188,4 @@ def springs(scene: Scene) -> list[tuple[str, Scene, ModalModel]]:
 def born_at(job: Job) -> int:
     """Period that is born; 0 for none."""
     strobed = strobed_at("beam", job.scene, job.f_times_t / job.model.free_period, job.model)
-    return born_period(strobed, job.excess, most_cycles=MOST_CYCLES)
+    return onset_m(strobed, job.excess, most_cycles=MOST_CYCLES)

@@ -36,7 +36,7 @@ from contact import (
     first_collision,
     simulate,
 )
-from contact.orbits import born
+from contact.orbits import onset_orbit
 from studies.letter import TIME_TRACE_EXCESS, TIME_TRACE_HZ
 from studies.physics.calibration import calibrate_gap, leaf_mass, with_mass_ratio
 from studies.shell.scene import (
@@ -127,12 +127,12 @@ class Case:
 
 def orbit_collision(oscillator: ImpactOscillator) -> tuple[Collision | None, int]:
     """The first collision of the settled orbit and its period; None where it has none or did not settle."""
-    settled = born(StroboscopicMap(oscillator=oscillator), oscillator.excess)
-    if not settled.period or not settled.impacts:
-        return None, settled.period
-    trajectory = simulate(oscillator, settled.end, periods=2 * settled.period + 2)
+    settled = onset_orbit(StroboscopicMap(oscillator=oscillator), oscillator.excess)
+    if not settled.m or not settled.impacts:
+        return None, settled.m
+    trajectory = simulate(oscillator, settled.end, periods=2 * settled.m + 2)
     found = collisions(trajectory, unfinished="drop")
-    return (found[0] if found else None), settled.period
+    return (found[0] if found else None), settled.m
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -30,7 +30,7 @@ from typing import Annotated
 
 import numpy as np
 
-from contact import maximal_period
+from contact import maximal_m
 from studies import letter
 from studies.experiment.hysteresis.model import (
     CAUSES,
@@ -122,7 +122,7 @@ def hysteresis(
 
     run.figure("hysteresis", figure.draw_curves(scene, rows, letters=run.letters), figure.CURVES)
     frequency = corresponding(scene, letter.TIME_TRACE_HZ)
-    m = maximal_period(nordmark_at(scene, frequency))
+    m = maximal_m(nordmark_at(scene, frequency))
     if branch := or_none(branch_of, scene, frequency, m, model) or []:
         run.figure("branch", figure.draw_branch(branch, frequency, m), figure.BRANCH)
     run.table("branch", branch, "The orbits of one branch of the beam.", of=OnBranch, show=())
@@ -213,11 +213,11 @@ def judge(
 
 def judge_bands(run: Run, scene: Scene, rows: Sequence[Inside]) -> Mapping[str, object]:
     """The verdict on the bands: no hysteresis at their upper edges, and growth towards the lower."""
-    of_band = [[row for row in rows if row.period == m] for m in BANDS]
+    of_band = [[row for row in rows if row.m == m] for m in BANDS]
     grows = all(falls([row.map for row in own]) and falls([row.eq1 for row in own]) for own in of_band)
     zero = max(max(own[-1].map, own[-1].eq1) for own in of_band)
     path = path_of(scene)
-    crossed = sorted({maximal_period(place) for place in path})
+    crossed = sorted({maximal_m(place) for place in path})
     run.verdict(
         "bands",
         "agrees" if zero < 1e-9 and grows else "differs",

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from contact import Band, NordmarkMap, band
+from contact import Band, NordmarkMap, frequency_band
 from studies import letter
 from studies.experiment.hysteresis.model import FREQUENCIES_HZ, Folds, OnBranch
 from studies.shell import plotting
@@ -95,7 +95,7 @@ def names_of_bands(axes: Sequence[Axes], scene: Scene, edges: Sequence[Band], le
     for edge in edges:
         middle = 0.5 * (max(edge.lower, lowest) + edge.upper)
         if middle < highest:
-            axes[0].text(middle, 0.035, f"p$_{{{edge.period}}}$", **at)
+            axes[0].text(middle, 0.035, f"p$_{{{edge.m}}}$", **at)
 
 
 @plotting.in_house_style
@@ -129,7 +129,7 @@ def draw_bands(scene: Scene, path: Sequence[NordmarkMap], *, letters: bool) -> F
     figure, axis = plotting.new_figure(height=0.075)
     mode, rates = scene.single_mode, np.geomspace(100.0, 1e-3, 80)
     for m in range(3, 9):
-        bands = partial(band, m, free_period=mode.free_period_s, restitution=mode.restitution)
+        bands = partial(frequency_band, m, free_period=mode.free_period_s, restitution=mode.restitution)
         edges = [bands(decay_rate=mu) for mu in rates.tolist()]
         f = np.array([*(one.upper for one in edges), *(one.lower for one in edges[::-1])])
         gamma = np.exp(-np.concatenate([rates, rates[::-1]]) / f)

@@ -96,13 +96,13 @@ def folds_at(
         map_printed=map_fold(replace(nordmark, y_line="printed"), m),
         single_mode=fold_at("single_mode", scene, frequency, m),
     )
-    kicks = KickFamily(oscillator=oscillator, period=m)
+    kicks = KickFamily(oscillator=oscillator, m=m)
     whole = kicks.fold()
     if whole is None:
         return row, None
     slope = float(whole.kick.jump[0, 1]) / whole.kick.speed
 
-    shooting = Shooting(oscillator=oscillator, period=m, impacts=whole.kick.touches)
+    shooting = Shooting(oscillator=oscillator, m=m, impacts=whole.kick.impacts)
     fold = fold_along_frequency(shooting, np.array([frequency]), near)[0]
     orbit = fold if isinstance(fold, PeriodicOrbit) else None
     row = replace(
@@ -137,23 +137,23 @@ def column(scene: Scene, model: ModalModel, step: float, m: int) -> list[Folds]:
 class Inside:
     """Hysteresis 1 - F_m/F_g at a frequency of the band of p_m, map and Eq. (1); 0 without a fold."""
 
-    period: int
+    m: int
     frequency_hz: float
     map: Annotated[float, "hysteresis 1 − F_m/F_g of the map"]
     eq1: Annotated[float, "hysteresis 1 − F_m/F_g of Eq. (1)"]
 
 
-def inside_band(scene: Scene, count: int, period: int) -> list[Inside]:
+def inside_band(scene: Scene, count: int, m: int) -> list[Inside]:
     """The hysteresis from the lower edge of a band to just below its upper one."""
-    edges = band_of(scene, period)
+    edges = band_of(scene, m)
     places = np.linspace(edges.lower, edges.upper, count)
     places[-1] = edges.upper - EDGE * (edges.upper - edges.lower)
     return [
         Inside(
-            period=period,
+            m=m,
             frequency_hz=frequency,
-            map=0.0 - (fold_at("map", scene, frequency, period) or 0.0),
-            eq1=0.0 - (fold_at("single_mode", scene, frequency, period) or 0.0),
+            map=0.0 - (fold_at("map", scene, frequency, m) or 0.0),
+            eq1=0.0 - (fold_at("single_mode", scene, frequency, m) or 0.0),
         )
         for frequency in places.tolist()
     ]
@@ -172,7 +172,7 @@ class OnBranch:
 
 def branch_of(scene: Scene, frequency: float, m: int, model: ModalModel) -> list[OnBranch]:
     """The orbits p_m of the beam at `frequency` [Hz] by their speed; empty where the branch has no fold."""
-    family = Shooting(oscillator=beam_at(scene, frequency, model), period=m)
+    family = Shooting(oscillator=beam_at(scene, frequency, model), m=m)
     fold = family.fold()
     if fold is None:
         return []

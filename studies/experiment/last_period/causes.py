@@ -18,7 +18,7 @@ import numpy as np
 
 from beam import Backbone, FiniteRotation, ModalModel, backbone_coefficient
 from contact import ImpactOscillator, NonlinearMode, StroboscopicMap
-from contact.orbits import born_period
+from contact.orbits import onset_m
 from studies.letter import AMPLITUDE_STABILITY, FREE_PERIOD_ERROR_S
 from studies.physics.descriptions import or_none
 from studies.shell.scene import (
@@ -148,7 +148,7 @@ def effect_of(scene: Scene, step: float, cause: Cause) -> Effect:
     *five, last = sorted(letter)
 
     def period(f: float, excess: float) -> int | None:
-        return or_none(born_period, cause.motions[f], excess, most_cycles=CYCLES)
+        return or_none(onset_m, cause.motions[f], excess, most_cycles=CYCLES)
 
     ten = [e for e in grid if period(last, e) == letter[last]]
     six = [e for e in ten if all(period(f, e) == letter[f] for f in five)]

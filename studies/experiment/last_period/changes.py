@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from typing import Annotated
 
 from beam import ModalModel
-from contact.orbits import born_period, fold_excess
+from contact.orbits import fold_excess, onset_m
 from studies.letter import BREAKDOWN, FREE_PERIOD_ERROR_S
 from studies.physics.calibration import calibrate_damping, calibrate_thickness, free_period
 from studies.physics.descriptions import or_none, strobed_at
@@ -130,7 +130,7 @@ def transitions_at(
     found = list[Transition]()
     for k, (name, words) in enumerate(DESCRIPTIONS.items()):
         strobed = strobed_at(name, scene, frequency, model)
-        born = or_none(born_period, strobed)
+        born = or_none(onset_m, strobed)
         m = (born or 0) if periods is None else periods[k]
         fold = or_none(fold_excess, strobed, m)
         found.append(Transition(frequency_hz=frequency, description=words, m=m, born=born, fold=fold))

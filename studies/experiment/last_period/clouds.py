@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact import StroboscopicMap
-from contact.orbits import born, born_period
+from contact.orbits import onset_m, onset_orbit
 from studies.letter import SETTLE_CYCLES, STROBE_POINTS
 from studies.physics.drive_noise import DriveNoise, watched
 from studies.shell.scene import READOUT, Scene, band_of
@@ -69,21 +69,21 @@ def since_impact(impacts: Counts) -> Counts:
     return np.where(last < 0, -1, n - last)
 
 
-def separate(points: Points, impacts: Counts, period: int) -> float:
+def separate(points: Points, impacts: Counts, m: int) -> float:
     """Part of the records of `STROBE_POINTS` strobes in which the groups of points do not overlap."""
     records = np.arange(points.size // STROBE_POINTS * STROBE_POINTS).reshape(-1, STROBE_POINTS)[1:]
     values, phase = points[records], since_impact(impacts)[records]
-    own = [np.where(phase == j, values, math.nan) for j in range(period)]
+    own = [np.where(phase == j, values, math.nan) for j in range(m)]
     low = np.array([np.fmin.reduce(each, axis=1) for each in own])
     high = np.array([np.fmax.reduce(each, axis=1) for each in own])
     order = np.argsort(low, axis=0)
     clear = np.take_along_axis(low, order, 0)[1:] > np.take_along_axis(high, order, 0)[:-1]
-    return float(np.mean(clear.all(axis=0) & (phase < period).all(axis=1)))
+    return float(np.mean(clear.all(axis=0) & (phase < m).all(axis=1)))
 
 
-def apart(points: Points, impacts: Counts, period: int) -> float:
+def apart(points: Points, impacts: Counts, m: int) -> float:
     """Least distance of neighbouring clouds over their mean width; NaN with too few points in one."""
-    groups = [points[since_impact(impacts) == j] for j in range(period)]
+    groups = [points[since_impact(impacts) == j] for j in range(m)]
     if min(group.size for group in groups) < FEWEST:
         return math.nan
     low, centre, high = np.array([np.quantile(group, (0.05, 0.5, 0.95)) for group in groups]).T
@@ -99,7 +99,7 @@ def clouds_of(noises: Sequence[DriveNoise], described: tuple[str, StroboscopicMa
         description=description,
         m=m,
         frequency_hz=strobed.oscillator.driven.frequency,
-        born=born_period(strobed, BORN_EXCESS),
+        born=onset_m(strobed, BORN_EXCESS),
     )
     if row.born != m:
         return row
@@ -114,8 +114,8 @@ def _in_noise(noise: DriveNoise, strobed: StroboscopicMap, m: int) -> tuple[floa
     here, frequency = strobed.at(BORN_EXCESS), strobed.oscillator.driven.frequency
     dice = np.random.default_rng([SEED, m, round(1e3 * frequency), round(1e3 * noise.correlation_s)])
     factors = 1.0 + noise.drift(frequency, dice).next(WAITS * WAITING)
-    run = here.orbit(born(strobed, BORN_EXCESS).end, factors.size, factors=factors)
-    low = born(strobed, noise.stability).end
+    run = here.orbit(onset_orbit(strobed, BORN_EXCESS).end, factors.size, factors=factors)
+    low = onset_orbit(strobed, noise.stability).end
     lower = strobed.at(noise.stability).orbit(low, factors.size, factors=factors)
     held = [watched(part, m)[0] > 0.5 for part in np.split(lower.impacts, WAITS)]
     at_laser = READOUT in strobed.oscillator.model.points

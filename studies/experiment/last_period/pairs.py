@@ -15,7 +15,7 @@ from typing import Annotated
 import numpy as np
 
 from contact import ContactError, ImpactOscillator, MapFamily, NordmarkMap, StroboscopicMap
-from contact.orbits import born_period
+from contact.orbits import onset_m
 from studies.letter import AMPLITUDE_STABILITY, FREE_PERIOD_ERROR_S, FREE_PERIOD_S, PERIODS
 from studies.physics.parameters import with_values
 
@@ -45,7 +45,7 @@ def is_born(single: ImpactOscillator, excess: float, frequency: float, period: f
     if excess == 0.0:
         return any(orbit.admissible for orbit in MapFamily(NordmarkMap.from_oscillator(one), m).at_rho(0.0))
     try:
-        return born_period(StroboscopicMap(oscillator=one), excess, most_cycles=CYCLES) == m
+        return onset_m(StroboscopicMap(oscillator=one), excess, most_cycles=CYCLES) == m
     except ContactError:
         return False
 

@@ -44,7 +44,7 @@ from contact.orbits import KickFamily
 
 def survival_sums(oscillator: ImpactOscillator) -> tuple[float, float]:
     """(S_-, S_+) of the module [s/kg]."""
-    flow, model = KickFamily(oscillator=oscillator, period=1).flow, oscillator.model
+    flow, model = KickFamily(oscillator=oscillator, m=1).flow, oscillator.model
     trace, determinant = flow[:, 0, 0] + flow[:, 1, 1], np.linalg.det(flow)
     parts = model.phi**2 * flow[:, 0, 1]
     less, more = (float(np.sum(parts / (1.0 + sign * trace + determinant))) for sign in (-1.0, 1.0))

@@ -88,7 +88,7 @@ def kicks_of(wall: SoftWall, excesses: np.ndarray) -> list[Kick]:
 
 def doubling_near(oscillator: ImpactOscillator, peak: float, kind: str = CERTAIN) -> PeriodicOrbit | None:
     """The period doubling of p1 by shooting, next to where its peak is `peak` gaps over the wall."""
-    family = Shooting(oscillator=oscillator, period=1)
+    family = Shooting(oscillator=oscillator, m=1)
     speed = oscillator.unit_speed * math.sqrt(2.0 * peak)
     low, high = speed / SPAN, SPAN * speed
     branch = follow(family, family.at_speed(speed), low=low, high=high, step=math.log(SPAN))
@@ -104,7 +104,7 @@ def loss_of_stability(oscillator: ImpactOscillator, doubling: PeriodicOrbit) -> 
 
     None if p1 is unstable even at the faintest touch, as without damping.
     """
-    family, orbit = Shooting(oscillator=oscillator, period=1), doubling
+    family, orbit = Shooting(oscillator=oscillator, m=1), doubling
 
     def largest(speed: float) -> float:
         nonlocal orbit
@@ -135,7 +135,7 @@ def doubling_of(wall: SoftWall) -> Doubling:
     beside = dict[bool, float]()
     if unsure:
         for ratio in (0.99, 1.01):  # rounding of the multipliers, up to 1e-4, decides nothing there
-            one = Shooting(oscillator=wall.struck, period=1).at_speed(unsure.speed * ratio, unsure)
+            one = Shooting(oscillator=wall.struck, m=1).at_speed(unsure.speed * ratio, unsure)
             beside[one.stable] = one.excess
     return Doubling(
         frequency_hz=wall.frequency,

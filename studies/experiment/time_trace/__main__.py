@@ -29,7 +29,7 @@ from typing import Annotated, Any
 from scipy.constants import g
 
 from contact import Collision, StroboscopicMap
-from contact.orbits import born
+from contact.orbits import onset_orbit
 from studies import letter
 from studies.experiment.time_trace import film as filming
 from studies.experiment.time_trace import model as computed
@@ -77,11 +77,11 @@ def time_trace(
     require_drive_below(scene, model, drive_hz)
     oscillator = beam_at(scene, drive_hz, model).with_excess(excess)
     kind, most = computed.SimulatedMap if scene.stops else StroboscopicMap, max(scene.scan.settle_cycles, 1)
-    settled = born(kind(oscillator=oscillator), excess, most_cycles=most)
-    length = ORBIT_PERIODS * settled.period or APERIODIC
+    settled = onset_orbit(kind(oscillator=oscillator), excess, most_cycles=most)
+    length = ORBIT_PERIODS * settled.m or APERIODIC
     trace = trace_of(oscillator, settled.end, length)
     # over one period of the orbit: a longer stretch only puts zeros between its lines
-    share = ORBIT_PERIODS if settled.period else 1
+    share = ORBIT_PERIODS if settled.m else 1
     part = trace.readout[: trace.readout.size // share]
     lines_hz, amplitude = lines_of(part, length / share * oscillator.period)
     peaks = peaks_of(lines_hz, amplitude, model.frequencies_hz, drive_hz)
@@ -99,7 +99,7 @@ def time_trace(
     run.table("peaks", peaks, "Peaks in the spectrum of the read-out.", of=Peak, show=(), words=peaked)
     from studies.experiment.time_trace.figure import draw_spectrum, draw_trace  # matplotlib is slow to import
 
-    name, impacts = word(settled.period), round(trace.impact_times.size / share)
+    name, impacts = word(settled.m), round(trace.impact_times.size / share)
     near = close_up(oscillator, settled.end, trace.collisions[0]) if trace.collisions else None
     run.figure(
         "time_trace",
@@ -115,12 +115,12 @@ def time_trace(
     size_g = amplitude_m * oscillator.driven.angular_frequency**2 / g
     run.say(f"{drive_hz:g} Hz, excess {excess:g}, base {1e3 * amplitude_m:.4g} mm, {size_g:.3g} g: {name}")
     higher = sorted({peak.mode for peak in peaks if peak.mode is not None and peak.mode > 1})
-    findings(run, settled.period, impacts, trace.collisions, higher)
+    findings(run, settled.m, impacts, trace.collisions, higher)
     if scene.stops:
         run.finding("The spring has several stops: impacts are listed instead of collisions.")
     filmed = dict[str, object]()
     if film:
-        words = f"base shaken at {drive_hz:.4g} Hz with {1e3 * amplitude_m:.3g} mm: {repeats(settled.period)}"
+        words = f"base shaken at {drive_hz:.4g} Hz with {1e3 * amplitude_m:.3g} mm: {repeats(settled.m)}"
         filmed["film"] = filming.film(scene, run, oscillator, settled, trace, words, frames=frames)
     seen = letter.PERIODS.get(drive_hz) if run.letters and excess == letter.TIME_TRACE_EXCESS else None
     if seen == letter.PERIODS[letter.TIME_TRACE_HZ]:
@@ -131,7 +131,7 @@ def time_trace(
         "excess": excess,
         "drive_amplitude_m": amplitude_m,
         "drive_acceleration_g": size_g,
-        "period": settled.period,
+        "m": settled.m,
         "letter": seen,
         "impacts": impacts,
         "impact_times_s": trace.impact_times,
@@ -142,18 +142,18 @@ def time_trace(
     }
 
 
-def repeats(period: int) -> str:
+def repeats(m: int) -> str:
     """When the motion repeats."""
-    if not period:
+    if not m:
         return "the motion has no period up to 64 drive periods"
-    whole = "each drive period" if period == 1 else f"{period} drive periods"
+    whole = "each drive period" if m == 1 else f"{m} drive periods"
     return f"the settled motion repeats after {whole}"
 
 
-def findings(run: Run, period: int, impacts: int, found: Sequence[Collision], higher: Sequence[int]) -> None:
+def findings(run: Run, m: int, impacts: int, found: Sequence[Collision], higher: Sequence[int]) -> None:
     """The findings."""
     touches = ("" if impacts else " and never touches the plate") if impacts != 1 else ", with one impact"
-    run.finding(f"{repeats(period).capitalize()}{touches}.")
+    run.finding(f"{repeats(m).capitalize()}{touches}.")
     if found and math.isfinite(found[0].restitution):
         left = written(found[0].restitution, 2)
         words = "times its approach velocity; higher modes ring with the rest"

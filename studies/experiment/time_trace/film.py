@@ -60,7 +60,7 @@ def film(
     """Film one period of a settled orbit; returns what the summary keeps of it."""
     modes, radius = modes_of(scene), scene.tip.ball_radius_m
     gaps = [stop.side * stop.gap for stop in oscillator.stops if stop.at == "tip"]
-    orbit = film_orbit(oscillator, settled.end, settled.period, frames=frames, rate=RATE)
+    orbit = film_orbit(oscillator, settled.end, settled.m, frames=frames, rate=RATE)
     scenery = Scenery.of(modes, ball_radius=radius, gaps=gaps, amplitude=float(np.abs(orbit.tip).max()))
     drawn, magnification = drawn_shapes(scenery.mesh, modes, orbit.coordinates)
     true, _ = drawn_shapes(scenery.mesh, modes, orbit.coordinates, 1.0)
@@ -167,10 +167,10 @@ def frame_times(duration: float, contacts: list[tuple[float, float]], frames: in
 
 
 def film_orbit(
-    oscillator: ImpactOscillator, state: State, period: int, *, frames: int, rate: float
+    oscillator: ImpactOscillator, state: State, m: int, *, frames: int, rate: float
 ) -> FilmedOrbit:
     """The motion from `state`, which lies at a strobe, in so many frames at `rate` a second."""
-    length = period or APERIODIC
+    length = m or APERIODIC
     duration, begin, points = length * oscillator.period, state.time, [stop.at for stop in oscillator.stops]
     whole = simulate(oscillator, state, periods=length + 1)
     felt = (whole.impacts.kind != ImpactKind.GRAZE) & (whole.impacts.start < begin + duration)

@@ -62,7 +62,7 @@ def transitions(
                 run.failed(where, reason)
     rows = [row for at in found for row in at.rows]
     parameters = [at.extracted for at in found if at.extracted is not None]
-    shown = ("frequency_hz", "description", "letter", "period", "excess_down", "ends_by")
+    shown = ("frequency_hz", "description", "letter", "m", "excess_down", "ends_by")
     words = "Periods that begin at grazing, and where their orbits end when the drive is lowered."
     run.table("transitions", rows, words, of=Transition, show=shown)
     words = "Restitution and time delay of the beam's collisions on the settled orbits."
@@ -101,23 +101,23 @@ def ends_beside_folds(rows: Sequence[Transition]) -> str:
 
 def in_words(rows: Sequence[Transition]) -> str:
     """The born periods of one frequency."""
-    return words({row.description: row.period for row in rows})
+    return words({row.description: row.m for row in rows})
 
 
 def findings(run: Run, rows: Sequence[Transition]) -> None:
     """The findings on the beam: its born periods, and the deepest of its orbits below grazing."""
-    beams = [row for row in rows if row.description == "beam" and row.period is not None]
-    ours = {row.frequency_hz: row.period for row in beams}
+    beams = [row for row in rows if row.description == "beam" and row.m is not None]
+    ours = {row.frequency_hz: row.m for row in beams}
     sentence, seen = "Map, Eq. (1) and beam have the same period just above grazing", rows
     if run.letters:
         sentence, seen = "Just above grazing the beam has the period that the letter saw", beams
-    own = [row.letter if run.letters else row.period for row in seen]
+    own = [row.letter if run.letters else row.m for row in seen]
     pairs = zip(seen, own, strict=True)
     other = sorted({row.frequency_hz for row, m in pairs if m not in (None, ours.get(row.frequency_hz))})
     but = f" but {other[0]:.2f} Hz" if len(other) == 1 else f" but {len(other)}" if other else ""
     if beams and len(other) < len(ours):
         run.finding(f"{sentence}, at every drive frequency{but}.")
-    depth, m = min(((row.excess_down or 0.0, row.period) for row in beams), default=(0.0, 0))
+    depth, m = min(((row.excess_down or 0.0, row.m) for row in beams), default=(0.0, 0))
     if depth < 0.0:
         words = f"When the amplitude is lowered again, the beam's p{m} remains until"
         run.finding(f"{words} {written(-100.0 * depth, 2)} % below grazing, the widest of these hystereses.")
@@ -125,7 +125,7 @@ def findings(run: Run, rows: Sequence[Transition]) -> None:
 
 def judge(run: Run, rows: Sequence[Transition]) -> bool:
     """Verdict on the transition at a frequency; returns whether all descriptions agree."""
-    same, first = [row.period == row.letter for row in rows], rows[0]
+    same, first = [row.m == row.letter for row in rows], rows[0]
     above = {row.description: row.born.get("0.01") for row in rows}
     note = "" if all(same) else f"at excess 0.01: {words(above)}"
     if (
@@ -141,16 +141,16 @@ def judge(run: Run, rows: Sequence[Transition]) -> bool:
 
 def compare(run: Run, rows: Sequence[Transition], parameters: Sequence[Extracted]) -> None:
     """Whether Eq. (1) with the two parameters has the beam's periods and ends, and the map with them."""
-    beams = {row.frequency_hz: row for row in rows if row.description == "beam" and row.period}
+    beams = {row.frequency_hz: row for row in rows if row.description == "beam" and row.m}
     twos = {row.frequency_hz: row for row in rows if row.description == "two_parameters"}
     found = [one for one in parameters if one.frequency_hz in beams]
     if not found:
         return
     pairs = [(twos[one.frequency_hz], beams[one.frequency_hz]) for one in found]
-    same = [(two, beam) for two, beam in pairs if two.period == beam.period]
+    same = [(two, beam) for two, beam in pairs if two.m == beam.m]
     ends = [(two.excess_down, beam.excess_down) for two, beam in same]
     close = sum(bool(a and b and 1.0 / NEARLY < a / b < NEARLY) for a, b in ends)
-    of_map = sum(one.map == beams[one.frequency_hz].period for one in found)
+    of_map = sum(one.map == beams[one.frequency_hz].m for one in found)
     if same:
         missed = len(found) - close
         where = "every frequency" if len(same) == len(found) else "some frequencies"

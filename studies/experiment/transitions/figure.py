@@ -34,7 +34,7 @@ def draw(
             if name in found:
                 panel(axis, row, found[name], letters)
             seen = "" if row.letter is None else f" (letter p$_{{{row.letter}}}$)"
-            words = f"p$_{{{row.period}}}$" if row.period else "no period"
+            words = f"p$_{{{row.m}}}$" if row.m else "no period"
             plotting.panel(axis, number, f"{row.frequency_hz:.2f} Hz: {words}{seen}")
         figure.suptitle(TITLES[name], fontweight="bold")
         sideways = (plotting.EXCESS, "10$^{-3}$") if name == "map" else ("drive amplitude", "mm")
@@ -65,9 +65,9 @@ def panel(axis: Axes, row: Transition, found: Mapping[str, Diagram], letters: bo
     for way, look in (("up", plotting.UP), ("down", plotting.DOWN)):
         diagram = found[way]
         amplitude = 1e3 * (diagram.excess if grazing is None else grazing * (1.0 + diagram.excess))
-        settled = diagram.period > 0
+        settled = diagram.m > 0
         # below grazing, beside the orbit that was born: longer ones with several impacts
-        beside = (diagram.excess < 0.0) & ~np.isin(diagram.period, (1, row.period or 0))
+        beside = (diagram.excess < 0.0) & ~np.isin(diagram.m, (1, row.m or 0))
         moving |= {a for a, kind in zip(amplitude, diagram.kind, strict=True) if kind == "not settled"}
         points = diagram.points[settled] * (1.0 if grazing is None else 1e3)
         words = f"{way}ward scan", "pale: orbit with several impacts"

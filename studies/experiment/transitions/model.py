@@ -8,7 +8,7 @@ import numpy as np
 
 from beam import ModalModel, Refusal
 from contact import ContactError, State
-from contact.orbits import born_period, fold_excess
+from contact.orbits import fold_excess, onset_m
 from studies import letter
 from studies.physics.descriptions import (
     TITLES,
@@ -33,7 +33,7 @@ class Transition:
     frequency_hz: float
     description: str
     letter: Annotated[int | None, "period in the letter"]
-    period: Annotated[int | None, "born period; 0 where the motion did not settle"] = None
+    m: Annotated[int | None, "born period; 0 where the motion did not settle"] = None
     excess_down: Annotated[float | None, "end of the orbit when the drive is lowered, F/F_g − 1"] = None
     ends_by: Annotated[str | None, "kind of that end"] = None
     end_speed: Annotated[float | None, "approach speed of the orbit at its end [m/s]"] = None
@@ -59,9 +59,9 @@ class AtFrequency:
 def lowered(row: Transition, strobed: Strobed, excess: float, cycles: int) -> tuple[Transition, State]:
     """The row with what is born at `excess` and how that ends, and the state on the born orbit."""
     orbit, end = born_and_lowered(strobed, excess, cycles)
-    periods = {f"{excess:g}": orbit.period}
-    periods |= {f"{other:g}": born_period(strobed, other, most_cycles=cycles) for other in OTHER_EXCESSES}
-    row = replace(row, period=orbit.period, born=periods)
+    periods = {f"{excess:g}": orbit.m}
+    periods |= {f"{other:g}": onset_m(strobed, other, most_cycles=cycles) for other in OTHER_EXCESSES}
+    row = replace(row, m=orbit.m, born=periods)
     if end is not None:
         speed = None if end.orbit is None else abs(end.orbit.speed)
         row = replace(row, excess_down=end.excess, ends_by=end.kind, end_speed=speed)
@@ -86,11 +86,11 @@ def rows_at(scene: Scene, frequency: float, model: ModalModel) -> AtFrequency:
         try:
             strobed = strobed_at(name, scene, frequency, model)
             row, state = lowered(row, strobed, scene.scan.born_excess, cycles)
-            if name == "two_parameters" and row.period:
-                parameters = extracted(scene, frequency, model, end=state, period=row.period)
+            if name == "two_parameters" and row.m:
+                parameters = extracted(scene, frequency, model, end=state, m=row.m)
                 row = replace(row, exact=None if parameters is None else parameters.fold)
             elif name in ("map", "single_mode"):
-                row = replace(row, exact=fold_excess(strobed, row.period or 0))
+                row = replace(row, exact=fold_excess(strobed, row.m or 0))
         except (ContactError, Refusal) as error:
             failures.append((f"{frequency:g} Hz, {name}", str(error)))
         found.append(row)
@@ -119,7 +119,7 @@ def scans(scene: Scene, model: ModalModel, full: bool, rows: Sequence[Transition
             early=not full,
             settle_cycles=letter.SETTLE_CYCLES if full else max(scan.settle_cycles, 1),
             record_cycles=scan.record_cycles,
-            largest_period=scan.largest_period,
+            largest_m=scan.largest_period,
         )
         for name, strobed in maps.items()
         if strobed is not None

@@ -213,7 +213,7 @@ def answered(one: Fit) -> Fit:
     why = ["the model is too small for the record"]
     if one.record.kind == "displacement":
         (times, values), residuals = one.record.rows.T, one.residuals[:, 0]
-        frequency, period = one.oscillator.driven.frequency, one.problem.prediction.period
+        frequency, period = one.oscillator.driven.frequency, one.problem.prediction.m
         why = wanders(times, values, residuals, frequency)
         why += contradictions(times, values, residuals, frequency, period)
     reason = "; ".join([*dict.fromkeys(why)][:2])

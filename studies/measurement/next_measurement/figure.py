@@ -19,7 +19,7 @@ from studies.shell import plotting
 from studies.shell.digits import written
 from studies.shell.run import Run
 
-BEST = ("frequency_hz", "excess", "period", "errors", "together")  # columns on the terminal
+BEST = ("frequency_hz", "excess", "m", "errors", "together")  # columns on the terminal
 PLANE = "Standard errors over frequency and excess by the best orbit at each place."
 
 ERRORS = {

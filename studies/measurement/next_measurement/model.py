@@ -30,7 +30,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from contact import ContactError, ImpactOscillator, NewtonRestitution, NordmarkMap, maximal_period
+from contact import ContactError, ImpactOscillator, NewtonRestitution, NordmarkMap, maximal_m
 from contact.orbits import KickFamily, PeriodicOrbit, Shooting, excess_derivatives, orbit_derivatives
 from studies import letter
 from studies.physics.parameters import changes_of, parameters_of
@@ -80,7 +80,7 @@ class Measurement:
 
     frequency_hz: float
     excess: float
-    period: int
+    m: int
     errors: Annotated[Mapping[str, float], "standard error with all else unknown"]
     alone: Annotated[Mapping[str, float], "standard error with all else known"]
     together: Annotated[float, "D-criterion; error of all together over their values"]
@@ -106,7 +106,7 @@ def sizes_of(orbit: PeriodicOrbit, plan: Plan) -> Array:
 def changed(orbit: PeriodicOrbit, plan: Plan) -> tuple[Array, Array]:
     """Derivatives of the readings over their noise, and of the excess, by the unknowns over their sizes."""
     found = orbit_derivatives(orbit, changes_of(orbit.oscillator, plan.unknown))
-    phi, weight = orbit.oscillator.model.phi, math.sqrt(plan.strobes / orbit.period) / plan.noise
+    phi, weight = orbit.oscillator.model.phi, math.sqrt(plan.strobes / orbit.m) / plan.noise
     rows = weight * np.einsum("i,jip->jp", phi, found.strobes_changed[:, : phi.size])
     grazing, sizes = found.changes.grazing_amplitude / plan.amplitude_error, sizes_of(orbit, plan)
     return np.vstack([rows, grazing]) * sizes, found.excess * sizes
@@ -139,9 +139,9 @@ def errors_of(orbits: Sequence[PeriodicOrbit], plan: Plan) -> Array:
 class Nodes:
     """The stable, admissible orbits p_m, m = `period`, at approach speeds above that of the fold."""
 
-    def __init__(self, oscillator: ImpactOscillator, period: int) -> None:
-        self.family = KickFamily(oscillator=oscillator, period=period)
-        self.exact, low = Shooting(oscillator=oscillator, period=period), self.family.fold()
+    def __init__(self, oscillator: ImpactOscillator, m: int) -> None:
+        self.family = KickFamily(oscillator=oscillator, m=m)
+        self.exact, low = Shooting(oscillator=oscillator, m=m), self.family.fold()
         self.fold = self.exact.at_speed(low.speed) if low else None
         slow, fast = (part * oscillator.unit_speed for part in SPEEDS)
         self.speeds = (low.speed if low else slow), fast
@@ -171,14 +171,14 @@ def measurement(orbit: PeriodicOrbit, nodes: Nodes, plan: Plan) -> Measurement:
     together = float(np.linalg.det(cov[:n, :n]) ** (0.5 / n)) if seen else math.inf
     place, distance = (orbit.oscillator.driven.frequency, orbit.excess), orbit.excess - nodes.excesses[0]
     lasting = seen and None not in [nodes.at(orbit.excess + way * off) for way in (-1, 1)]
-    return Measurement(*place, orbit.period, errors, alone, together, distance, off, lasting)
+    return Measurement(*place, orbit.m, errors, alone, together, distance, off, lasting)
 
 
 def measurements_at(of: Of, plan: Plan, excesses: Sequence[float], frequency: float) -> list[Measurement]:
     """All orbits at a drive frequency [Hz]: p_m, where m is that of the map there, and its neighbours."""
     oscillator, found = of(frequency), list[Measurement]()
     plastic = replace(oscillator.stop, law=NewtonRestitution(local_restitution=0.0))
-    m = maximal_period(NordmarkMap.from_oscillator(replace(oscillator, stop=plastic)))
+    m = maximal_m(NordmarkMap.from_oscillator(replace(oscillator, stop=plastic)))
     for nodes in [Nodes(oscillator, period) for period in range(max(m - 1, 2), m + 2)]:
         orbits = [orbit for orbit in map(nodes.at, excesses) if orbit is not None]
         found += [measurement(orbit, nodes, plan) for orbit in orbits]
@@ -216,7 +216,7 @@ def letter_rows(of: Of, plan: Plan) -> list[LetterOrbits]:
     alike = [pair for pair in combinations(six, 2) if abs(pair[0].speed / pair[1].speed - 1.0) < ALIKE]
     rows = list[LetterOrbits]()
     for orbits in [*((orbit,) for orbit in six), *alike]:
-        names, errors = " and ".join(f"p{one.period}" for one in orbits), errors_of(orbits, plan)
+        names, errors = " and ".join(f"p{one.m}" for one in orbits), errors_of(orbits, plan)
         second = orbits[1].speed if len(orbits) > 1 else None
         rows.append(LetterOrbits(names, orbits[0].speed, second, by_name(orbits[0], plan, errors)))
     return rows
@@ -237,6 +237,6 @@ def findings(found: Sequence[Measurement], letters: Sequence[LetterOrbits]) -> l
         error = f"{first.errors['restitution']:.1g}"
         said.append(f"Two orbits together, {first.orbits}, determine the restitution to {error}.")
     if chosen:
-        place = f"p{chosen[0].period} at {chosen[0].frequency_hz:.2f} Hz"
+        place = f"p{chosen[0].m} at {chosen[0].frequency_hz:.2f} Hz"
         said.append(f"If the amplitude at grazing gives the gap, {place} is the best next measurement.")
     return said[:2]

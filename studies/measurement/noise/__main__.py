@@ -25,7 +25,7 @@ from typing import Annotated
 import numpy as np
 
 from contact import StroboscopicMap
-from contact.orbits import born
+from contact.orbits import onset_orbit
 from studies.letter import AMPLITUDE_STABILITY, SETTLE_CYCLES
 from studies.measurement.noise.model import End, Observed, ends_of, observed_of
 from studies.measurement.noise.places import Place
@@ -97,8 +97,8 @@ def letter_periods(scene: Scene) -> list[tuple[float, int]]:
     """The frequencies of the scene at which a p_m of Eq. (1) is born, with m."""
     found = []
     for f in sorted(scene.drive.frequencies_hz):
-        orbit = born(StroboscopicMap(oscillator=single_mode_at(scene, f)), AMPLITUDE_STABILITY)
-        found += [(f, orbit.period)] if orbit.period > 1 and orbit.impacts == 1 else []
+        orbit = onset_orbit(StroboscopicMap(oscillator=single_mode_at(scene, f)), AMPLITUDE_STABILITY)
+        found += [(f, orbit.m)] if orbit.m > 1 and orbit.impacts == 1 else []
     return found
 
 

@@ -36,7 +36,7 @@ class Place:
     @cached_property
     def family(self) -> MaximalFamily:
         """The orbits p_m."""
-        return MaximalFamily.from_oscillator(self.strobed.oscillator, period=self.m)
+        return MaximalFamily.from_oscillator(self.strobed.oscillator, m=self.m)
 
     @cached_property
     def map_fold(self) -> float | None:

@@ -28,7 +28,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from contact.orbits import cloud, strobe_derivatives
+from contact.orbits import strobe_covariance, strobe_derivatives
 from studies.measurement.noise.places import Place
 from studies.measurement.noise.scans import Protocol
 from studies.physics.drive_noise import Array
@@ -127,7 +127,7 @@ def touched_in_white_noise(place: Place, protocol: Protocol) -> Law:
     row = fade * np.array([math.cos(high * peak) + decay * sine, omega * sine])
     own = height - row @ steady
     matrix, pull = strobe_derivatives(strobed, strobed.steady(), 1)[0]
-    spread = cloud(strobed, strobed.steady(), 1, deviation=s)[0]
+    spread = strobe_covariance(strobed, strobed.steady(), 1, deviation=s)[0]
     variance = row @ spread @ row + (own * s) ** 2
     together = (row @ matrix @ spread @ row + (row @ pull) * own * s**2) / variance
     alike = math.sqrt((1.0 - together) / (1.0 + together))

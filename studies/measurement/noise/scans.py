@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 
 from beam import InvalidValue
 from contact import ContactError
-from contact.orbits import born
+from contact.orbits import onset_orbit
 from studies.measurement.noise.places import Place
 from studies.physics.drive_noise import Array, Drift, DriveNoise, watched
 
@@ -145,7 +145,7 @@ def scans(place: Place, protocol: Protocol, count: int, seed: int) -> dict[str, 
             ends = scan(place.strobed, start[1], levels, m, protocol, drift)
             found[way, :, i] = ends if ends[1] != levels[0] else math.nan
     met, top = np.empty(min(count, MEETINGS) if place.fold else 0), place.scene.scan.born_excess
-    state = born(place.strobed, top).end if place.fold else None
+    state = onset_orbit(place.strobed, top).end if place.fold else None
     for i in range(met.size):
         drift, part = dice_of(i, len(ways))
         levels = np.arange(top - part * protocol.step, place.fold.excess, -protocol.step)

@@ -26,7 +26,7 @@ import numpy as np
 
 from beam import ModalModel, reduce
 from contact import ImpactOscillator, StroboscopicMap
-from contact.orbits import born_period, fold_excess
+from contact.orbits import fold_excess, onset_m
 from studies import letter
 from studies.physics import least_model
 from studies.physics.least_model import (
@@ -134,7 +134,7 @@ def _delays(at: At, frequency: float) -> Answer:
 def _born_periods(at: At, frequency: float) -> Answer:
     error = letter.FREE_PERIOD_ERROR_S / letter.FREE_PERIOD_S
     drives = [frequency * (1.0 + shift) for shift in (-error, 0.0, error)]
-    return np.array([float(born_period(StroboscopicMap(oscillator=at(drive)))) for drive in drives])
+    return np.array([float(onset_m(StroboscopicMap(oscillator=at(drive)))) for drive in drives])
 
 
 _SHARED = {name: found[:2] for name, found in least_model.QUANTITIES.items()}

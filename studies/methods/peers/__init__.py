@@ -13,7 +13,7 @@ started anew there. Nothing is shared with the exact methods but the
 parameters. Dashpots, constant loads and other laws are refused; a tip that rests on the stop ends in
 an error.
 
-No library is imported before a run needs it.
+No library is imported before a plan needs it.
 
 `piecewise`   the equations of a flight and of a contact, and the motion from one event to the next
 `adapters`    SciPy, heyoka and CVODE, each from one event to the next
@@ -27,7 +27,7 @@ from typing import ClassVar
 
 from beam import InvalidValue
 from contact import HertzContact, ImpactOscillator, LinearContact, NewtonRestitution, Trajectory
-from contact.integrators import Integrator, Run
+from contact.integrators import Integrator, Plan
 from studies.methods.peers.adapters import cvode_pieces, heyoka_pieces, scipy_pieces
 from studies.methods.peers.piecewise import Advance, Equations, pieced
 from studies.shell.programs import needs
@@ -80,6 +80,6 @@ class OutsideSolver(Integrator):
         if find_spec(module) is None:
             raise ImportError(needs(f"{module} is not installed: {self.solver}", "heyoka scikit-sundae"))
 
-    def follow(self, oscillator: ImpactOscillator, run: Run) -> Trajectory:
-        """The motion of `run`; evaluations are of the right-hand side, heyoka's its Taylor steps."""
-        return pieced(oscillator, run, self.tolerance, SOLVERS[self.solver][1])
+    def follow(self, oscillator: ImpactOscillator, plan: Plan) -> Trajectory:
+        """The motion of `plan`; evaluations are of the right-hand side, heyoka's its Taylor steps."""
+        return pieced(oscillator, plan, self.tolerance, SOLVERS[self.solver][1])

@@ -9,7 +9,7 @@ it does in sigma, dt = s dsigma with s = sqrt(d) (K. F. Sundman, Acta Math. 36 (
 
 Touch and release are regular points; a wanted time within a contact is an event t = target. Compiling takes
 0.05 to 0.4 s and is no part of the cost of a step: heyoka's integrators are kept for each number of modes,
-kind of equation and tolerance, in each thread, with all physical numbers as run-time parameters.
+kind of equation and tolerance, in each thread, with all physical numbers as plan-time parameters.
 """
 
 import math
@@ -160,7 +160,7 @@ def heyoka_equations(
 ) -> tuple[list[Heyoka], Heyoka]:
     """The equations of a flight, a linear contact, or a Hertz contact in sigma, and the penetration [m].
 
-    `modes` and `scalars`, as in `rates` of ``piecewise``, are numbers, or parameters at run time.  The last
+    `modes` and `scalars`, as in `rates` of ``piecewise``, are numbers, or parameters at plan time.  The last
     two equations in sigma are of s and t.
     """
     import heyoka as hy

@@ -34,7 +34,7 @@ from contact import (
     State,
     Trajectory,
 )
-from contact.integrators import Run
+from contact.integrators import Plan
 
 EPS = 2.220446049250313e-16
 
@@ -96,9 +96,9 @@ def numbers_of(oscillator: ImpactOscillator, clock: float = 0.0) -> tuple[Array,
 
 
 class Equations:
-    """The equations of a run; times count from its start."""
+    """The equations of a plan; times count from its start."""
 
-    def __init__(self, oscillator: ImpactOscillator, run: Run, tolerance: float) -> None:
+    def __init__(self, oscillator: ImpactOscillator, plan: Plan, tolerance: float) -> None:
         model, law, drive = oscillator.model, oscillator.stop.law, oscillator.drive
         self.hard = law.code == NewtonRestitution.code and law.table.size == 0  # a constant restitution
         self.hertz = law.code == HertzContact.code
@@ -107,16 +107,16 @@ class Equations:
             raise InvalidType(
                 f"law of the stop is {law}; outside solvers follow elastic contacts without load"
             )
-        self.oscillator, self.start, self.tolerance = oscillator, run.start, tolerance
+        self.oscillator, self.start, self.tolerance = oscillator, plan.start, tolerance
         self.n, self.phi = oscillator.n_modes, model.phi
         self.compliance, self.number = float(model.phi @ model.phi), law.numbers[0]
-        self.modes, self.scalars = numbers_of(oscillator, run.clock)
+        self.modes, self.scalars = numbers_of(oscillator, plan.clock)
         w, amplitude = float(self.scalars[0]), 0.0 if drive is None else drive.amplitude
         lowest = w if w > 0.0 else 2.0 * math.pi / oscillator.period
         omega = np.maximum(model.omega, lowest)
         vectors = (
-            run.start.velocity,
-            model.omega * run.start.displacement,
+            plan.start.velocity,
+            model.omega * plan.start.displacement,
             amplitude * lowest * np.abs(oscillator.steady_response()),
         )
         reach = lowest * oscillator.stop.gap / math.sqrt(self.compliance)
@@ -185,11 +185,11 @@ class Equations:
 
 
 def pieced(
-    oscillator: ImpactOscillator, run: Run, tolerance: float, solver: Callable[[Equations], Advance]
+    oscillator: ImpactOscillator, plan: Plan, tolerance: float, solver: Callable[[Equations], Advance]
 ) -> Trajectory:
-    """The motion of `run`, from one event to the next."""
-    e = Equations(oscillator, run, tolerance)
-    n, period, start, advance = e.n, oscillator.period, run.start, solver(e)
+    """The motion of `plan`, from one event to the next."""
+    e = Equations(oscillator, plan, tolerance)
+    n, period, start, advance = e.n, oscillator.period, plan.start, solver(e)
     y = np.concatenate([start.displacement, start.velocity])
     depth, rate = e.tip(y)
     if start.regime != 0 or depth > e.rounding:
@@ -207,12 +207,14 @@ def pieced(
         return contact, after
 
     contact, y = touched(0.0, y) if depth >= -e.rounding and rate > 0.0 else (False, y)
-    passed = np.arange(run.first + 1, run.last + 1)
-    strobe = np.clip((passed - run.first) * period - run.clock, 0.0, run.length)
-    sample = np.clip((run.sample_period - run.first) * period + run.sample_clock - run.clock, 0.0, run.length)
-    times, place = np.unique(np.concatenate([strobe, sample, [run.length]]), return_inverse=True)
+    passed = np.arange(plan.first + 1, plan.last + 1)
+    strobe = np.clip((passed - plan.first) * period - plan.clock, 0.0, plan.length)
+    sample = np.clip(
+        (plan.sample_stretch - plan.first) * period + plan.sample_clock - plan.clock, 0.0, plan.length
+    )
+    times, place = np.unique(np.concatenate([strobe, sample, [plan.length]]), return_inverse=True)
     states, reached, s = np.empty((times.size, 2 * n)), 0, 0.0
-    spent, slack = 0, 8.0 * EPS * run.length
+    spent, slack = 0, 8.0 * EPS * plan.length
     while True:
         while reached < times.size and times[reached] <= s + slack:
             states[reached] = y
@@ -238,7 +240,7 @@ def pieced(
     end = State(
         displacement=last[0, :n],
         velocity=last[0, n:],
-        time=run.last * period + run.clock_end,
+        time=plan.last * period + plan.clock_end,
         regime=int(contact),
     )
     return Trajectory(
@@ -248,7 +250,7 @@ def pieced(
         strobe_displacement=at_strobe[:, :n],
         strobe_velocity=at_strobe[:, n:],
         strobe_impacts=counts.astype(np.int64),
-        time=run.times,
+        time=plan.times,
         displacement=at_sample[:, :n],
         velocity=at_sample[:, n:],
         impacts=e.impacts(touches, releases),

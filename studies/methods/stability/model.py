@@ -200,5 +200,5 @@ def limit(
 def stiffest(model: ModalModel, method: Stepped, *, family: str, case: str) -> Limit:
     """The largest stiffness of a lasting contact."""
     row = partial(Limit, family=family, case=case, parameter="contact stiffness", unit="N/m")
-    theory = method.critical_stiffness(pressed(model, 1.0)[0].motion())
+    theory = method.critical_stiffness(pressed(model, 1.0)[0].numbers())
     return limit(row, model, theory, lambda stiffness: (stiffness, method))

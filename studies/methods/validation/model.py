@@ -92,12 +92,12 @@ rig = partial(driven, decay=0.02, stop=Stop(gap=1.0, law=LinearContact(stiffness
 def p2(w: float) -> orbits.Shooting:
     """Ghosh and Simpson's orbits with one impact in two drive periods."""
     stop = Stop(gap=1.0, law=NewtonRestitution(local_restitution=0.9))
-    return orbits.Shooting(oscillator=driven(w, 0.04, stop), period=2)
+    return orbits.Shooting(oscillator=driven(w, 0.04, stop), m=2)
 
 
 def bifurcation(w: float) -> orbits.PeriodicOrbit:
     """Below resonance the fold, above it the doubling next to the published speeds; by following p2."""
-    s, b = orbits.MaximalFamily(oscillator=p2(w).oscillator, period=2).coefficients
+    s, b = orbits.MaximalFamily(oscillator=p2(w).oscillator, m=2).coefficients
     near = s / (s * s + b * b) if s > 0 else float(np.interp(w, list(SPEEDS), list(SPEEDS.values())))
     branch = orbits.follow(p2(w), p2(w).at_speed(1.1 * near), low=0.5 * near, high=2.0 * near)
     return min(branch.of_kind("fold" if s > 0 else "period doubling"), key=lambda one: abs(one.speed - near))

@@ -3,7 +3,7 @@
 Differentiated is a motion of Eq. (1): time of its last impact, displacement and velocity at its last strobe,
 by the six parameters of `NAMES`.
 
-    exact        tangents through flights and impacts (contact.sensitivity.motion)
+    exact        tangents through flights and impacts (contact.sensitivity.derivatives)
     differences  central, of the same motion, at relative steps of 1e-3 ... 1e-12
 
 An error is the norm over 18 numbers, each parameter in units of its value, each result in units of its

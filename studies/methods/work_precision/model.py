@@ -217,7 +217,7 @@ def orbit_rows(*, quick: bool, repeats: int) -> tuple[Reference, list[Point]]:
         return simulate(o, start, periods=periods).end
 
     def shot() -> State:
-        return Shooting(oscillator=o, period=1).from_state(start).strobe_state()
+        return Shooting(oscillator=o, m=1).from_state(start).strobe_state()
 
     jobs = [("harmonic balance", f"order {n}", partial(balance, n)) for n in SAMPLES if n < 81 or not quick]
     jobs += [("settling", f"{n} periods", partial(later, n)) for n in SETTLING]

@@ -80,7 +80,7 @@ def driven_problem(name: str, title: str, oscillator: ImpactOscillator) -> Probl
         size=size,
         speed=2.0 * math.pi / oscillator.period * size,
         cost_start=replace(settled.end, time=0.0),
-        cost_periods=settled.period or UNSETTLED,
+        cost_periods=settled.m or UNSETTLED,
         contact_time=first_collision(oscillator).contact_time,
     )
 

@@ -189,9 +189,9 @@ EQ_1 |= {"restitution": "single_mode.restitution"}
 """Arguments of Eq. (1), and their keys."""
 
 
-def band_of(scene: Scene, period: int) -> contact.Band:
+def band_of(scene: Scene, m: int) -> contact.Band:
     """The band of p_m of the map with the scene's single mode, m = `period`."""
-    return scene.make(partial(contact.band, period), EQ_1)
+    return scene.make(partial(contact.frequency_band, m), EQ_1)
 
 
 def nonlinear_mode_at(

@@ -27,7 +27,7 @@ from scipy.optimize import newton
 
 from beam import FiniteRotation, backbone_coefficient, periodic_motion
 from contact import NonlinearMode
-from contact.orbits import born_period
+from contact.orbits import onset_m
 from studies.letter import AMPLITUDE_STABILITY
 from studies.physics.calibration import calibrate_thickness
 from studies.shell.scene import Scene, harmonic, nonlinear_mode_at, periods_of, spring_of
@@ -140,8 +140,7 @@ def survivals(scene: Scene, gaps: Sequence[float], spring: Key) -> list[Survival
             modes = with_frame(here, modes)
         low, born = (
             tuple(
-                tried(partial(born_period, mode, excess, most_cycles=scene.scan.settle_cycles))
-                for mode in modes
+                tried(partial(onset_m, mode, excess, most_cycles=scene.scan.settle_cycles)) for mode in modes
             )
             for excess in EXCESSES
         )

@@ -37,7 +37,7 @@ class OrbitEnds:
     """The orbit just above grazing, and where it ends on the way down."""
 
     frequency_hz: float
-    period: Annotated[int | None, "period of the orbit of the beam"]
+    m: Annotated[int | None, "period of the orbit of the beam"]
     same_period: Annotated[bool, "the plates have the same period"]
     beam: Annotated[float | None, "end of the orbit when the drive is lowered, F/F_g − 1, beam"] = None
     point: Annotated[float | None, "end, plate with the ball on a point"] = None
@@ -103,7 +103,7 @@ class Cell:
         """The period just above grazing, and the excess at which it ends on the way down."""
         strobed = StroboscopicMap(oscillator=beam_at(scene, self.frequency, self.model))
         orbit, end = born_and_lowered(strobed, scene.scan.born_excess, max(scene.scan.settle_cycles, 1))
-        return orbit.period, None if end is None else end.excess
+        return orbit.m, None if end is None else end.excess
 
 
 def orbit_rows(
@@ -117,7 +117,7 @@ def orbit_rows(
         rows.append(
             OrbitEnds(
                 frequency_hz=frequency,
-                period=known["beam"][0] if "beam" in known else None,
+                m=known["beam"][0] if "beam" in known else None,
                 same_period=len({period for period, _ in known.values()}) == 1,
                 **{name: end for name, (_, end) in known.items()},
             )

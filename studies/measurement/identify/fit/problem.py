@@ -138,7 +138,7 @@ def chance_of(problem: Problem, solved: Found, known: bool) -> float:
     prediction, freedom = problem.prediction, problem.freedom
     residuals = solved.fun[: problem.observed.size]
     found = [float(stats.chi2.sf(residuals @ residuals, freedom))] if known else []
-    kind, period = prediction.record.kind, prediction.period
+    kind, period = prediction.record.kind, prediction.m
     if kind == "strobe":
         rows = residuals.reshape(len(prediction.record.rows), -1)
         means = np.array([rows[k::period].mean(axis=0) for k in range(period)])

@@ -158,7 +158,7 @@ def best(problems: Sequence[Problem], known: bool) -> tuple[Problem, Found]:
         first = _part(problem, 0)
         try:
             found = first.solve(problem.start, EARLY, ROUGH * first.freedom)
-            whole = problem if problem.prediction.period else first
+            whole = problem if problem.prediction.m else first
             begun.append((float(np.sum(whole.residuals(found.x) ** 2)), i, found.x))
         except (ContactError, Refusal) as error:
             failure = failure or error

@@ -92,18 +92,18 @@ class Displacement(Prediction):
         sensor: Mapping[str, float],
         free: Sequence[str],
         *,
-        period: int = 0,
+        m: int = 0,
         clock: float = 0.0,
         first: int = 0,
     ) -> None:
         model, gap = oscillator.model, oscillator.stop.gap
         self.record, self.times = record, record.rows[:, 0]
-        self.period, self.clock, self.first = period, clock, first
+        self.m, self.clock, self.first = m, clock, first
         tip = gap / np.abs(model.phi)
         self.scale = np.append(tip, tip * model.omega)
         self.orbit = Orbit(state=np.ravel(start))
         sizes = {"phase": 1.0, "offset": gap, "scale": 1.0}
-        own = np.empty(0) if period else self.scale
+        own = np.empty(0) if m else self.scale
         others = np.tile(np.arange(model.n_modes) != model.leading_mode, 2)[: own.size]
         self.sensor, self.fixed = tuple(free), dict(sensor)
         self.sizes = np.append(own, [sizes[name] for name in free])
@@ -114,7 +114,7 @@ class Displacement(Prediction):
     def parts(self) -> Sequence[Self]:
         """Few rows of an orbit, then all; of other motions more and more rows from the first on."""
         rows = len(self.times)
-        if self.period:
+        if self.m:
             return [self.part(slice(None, None, -(-rows // FEW))), self]
         counts = [int(self.first * GROWTH**k) for k in range(64) if 0 < self.first * GROWTH**k < rows]
         return [*(self.part(slice(count)) for count in counts), self]
@@ -140,8 +140,8 @@ class Displacement(Prediction):
     def _placed(self, oscillator: ImpactOscillator, extra: Array) -> tuple[State, Array, float]:
         """The start, the times of the rows and the end of the motion, on the clock of the drive."""
         w, phase = oscillator.driven.angular_frequency, self.reading(extra)["phase"]
-        if self.period:
-            begun, lasting = self.clock, self.period * oscillator.period
+        if self.m:
+            begun, lasting = self.clock, self.m * oscillator.period
             times = begun + (self.times + phase / w - begun) % lasting
             return self._closed(oscillator), times, begun + lasting
         begun = ((phase + w * self.times[0]) % (2.0 * math.pi)) / w
@@ -156,13 +156,13 @@ class Displacement(Prediction):
         """
         n, begun, last = oscillator.n_modes, self.clock, self.orbit
         state, inverse, before = last.at(oscillator), last.inverse, FAR
-        end = np.array([begun + self.period * oscillator.period])
+        end = np.array([begun + self.m * oscillator.period])
         for _ in range(STEPS):
             at = State(displacement=state[:n], velocity=state[n:], time=begun)
             periods = _periods(float(end[0]), oscillator)
             if inverse is None:
                 found = motion_derivatives(oscillator, at, periods=periods, times=end)
-                run, inverse = found.run, np.linalg.inv(np.eye(2 * n) - found.states[0])
+                run, inverse = found.trajectory, np.linalg.inv(np.eye(2 * n) - found.states[0])
             else:
                 run = simulate(oscillator, at, periods=periods, times=end)
             step = inverse @ (np.append(run.displacement[0], run.velocity[0]) - state)
@@ -173,7 +173,7 @@ class Displacement(Prediction):
             if size < CLOSED:
                 return State(displacement=state[:n], velocity=state[n:], time=begun)
             inverse, before = inverse if size < SLOW * before else None, size
-        raise NoAnswer(f"no orbit of {self.period} drive periods was found with these parameters")
+        raise NoAnswer(f"no orbit of {self.m} drive periods was found with these parameters")
 
     def run(self, oscillator: ImpactOscillator, extra: Array) -> tuple[Trajectory, NDArray[np.int64]]:
         """The motion, the place of each row and of the end in it; InvalidValue if it rests on the stop."""
@@ -199,16 +199,16 @@ class Displacement(Prediction):
         changes, periods = changes_of(oscillator, names), _periods(end, oscillator)
         found = motion_derivatives(oscillator, state, changes, periods=periods, times=times)
         tip = np.tensordot(found.states[:, :n], oscillator.model.phi, (1, 0))[place[:-1]]
-        own = tip[:, 2 * n :] + found.run.displacement[place[:-1]] @ shapes_changed(changes, n)
+        own = tip[:, 2 * n :] + found.trajectory.displacement[place[:-1]] @ shapes_changed(changes, n)
         tips = tip[:, : 2 * n]
-        run, scale = found.run, self.reading(extra)["scale"]
+        run, scale = found.trajectory, self.reading(extra)["scale"]
         x, later = (oscillator.tip(one)[place[:-1]] for one in (run.displacement, run.velocity))
         moved = [name == "frequency" for name in names]
         rate = _rate(oscillator, state)
-        if self.period:
+        if self.m:
             own = own + np.outer((self.times - rows) / f * later, moved)
             last = found.states[place[-1]]
-            ends = last[:, 2 * n :] - np.outer(rate * self.period * oscillator.period / f, moved)
+            ends = last[:, 2 * n :] - np.outer(rate * self.m * oscillator.period / f, moved)
             orbit = self.orbit
             orbit.inverse = np.linalg.inv(np.eye(2 * n) - last[:, : 2 * n])
             orbit.state, orbit.follow = np.append(state.displacement, state.velocity), orbit.inverse @ ends

@@ -38,7 +38,7 @@ class Prediction(ABC):
     """
 
     record: Record
-    period: int = 0
+    m: int = 0
     extra: Array = np.empty(0)
     sizes: Array = np.empty(0)
     prior: Array = np.empty(0)
@@ -66,10 +66,10 @@ def in_closed_form(law: ContactLaw) -> bool:
     return isinstance(law, NewtonRestitution) and law.table.size == 0
 
 
-def family_of(oscillator: ImpactOscillator, period: int) -> MaximalFamily | KickFamily:
+def family_of(oscillator: ImpactOscillator, m: int) -> MaximalFamily | KickFamily:
     """The orbits p_m by linear algebra: exact under Newton's law, close under any other."""
     family = MaximalFamily if in_closed_form(oscillator.stop.law) else KickFamily
-    return family(oscillator=oscillator, period=period)
+    return family(oscillator=oscillator, m=m)
 
 
 def shapes_changed(changes: Sequence[Change], count: int) -> Array:
@@ -81,45 +81,45 @@ def shapes_changed(changes: Sequence[Change], count: int) -> Array:
 class Strobes(Prediction):
     """The m strobe points of p_m."""
 
-    def __init__(self, record: Record, period: int, orbit: SingleImpactOrbit) -> None:
-        self.record, self.period = record, period
-        family = Shooting(oscillator=orbit.oscillator, period=period)
+    def __init__(self, record: Record, m: int, orbit: SingleImpactOrbit) -> None:
+        self.record, self.m = record, m
+        family = Shooting(oscillator=orbit.oscillator, m=m)
         self.orbit: PeriodicOrbit = family.at_speed(orbit.speed)
         self.at, rows = orbit.oscillator, record.observed
-        self.mean = np.array([rows[k::period].mean(axis=0) for k in range(period)])
+        self.mean = np.array([rows[k::m].mean(axis=0) for k in range(m)])
 
     def values(self, oscillator: ImpactOscillator, extra: Array) -> Array:
         """The strobe points of the orbit next to the last one, a row for each of the record."""
         if oscillator is not self.at:
-            family = Shooting(oscillator=oscillator, period=self.period)
+            family = Shooting(oscillator=oscillator, m=self.m)
             orbit = family.at_excess(oscillator.excess, self.orbit)
             if not orbit.admissible:
-                raise InvalidValue(f"p{self.period} has another impact with these parameters")
+                raise InvalidValue(f"p{self.m} has another impact with these parameters")
             self.orbit, self.at = orbit, oscillator
         return self.of_orbit()
 
     def of_orbit(self) -> Array:
         """The strobe points of the last orbit."""
         oscillator = self.orbit.oscillator
-        run = simulate(oscillator, self.orbit.state(), periods=self.period)
+        run = simulate(oscillator, self.orbit.state(), periods=self.m)
         rows = run.strobe_displacement, run.strobe_velocity
         points = np.column_stack([oscillator.tip(row) for row in rows[: self.mean.shape[1]]])
         return self._in_order(points, points[:, 0])
 
     def _in_order(self, values: Array, x: Array) -> Array:
         """`values` of the m strobes, shape (m, ...), as rows of the record, in the order in which x fits."""
-        places = (np.arange(self.period) - np.arange(self.period)[:, None]) % self.period
+        places = (np.arange(self.m) - np.arange(self.m)[:, None]) % self.m
         best = places[np.argmin(np.sum((x[places] - self.mean[:, 0]) ** 2, axis=1))]
-        return np.asarray(values[best[np.arange(len(self.record.rows)) % self.period]])
+        return np.asarray(values[best[np.arange(len(self.record.rows)) % self.m]])
 
     def jacobian(self, oscillator: ImpactOscillator, extra: Array, names: Sequence[str]) -> Array:
         """Derivatives of `values`."""
         points = self.values(oscillator, extra)
         n, changes = oscillator.n_modes, changes_of(self.orbit.oscillator, names)
         found = orbit_derivatives(self.orbit, changes)
-        states = found.strobes_changed.reshape(self.period, 2, n, len(names))
+        states = found.strobes_changed.reshape(self.m, 2, n, len(names))
         tips = np.tensordot(states, oscillator.model.phi, (2, 0))
-        tips += found.strobes.reshape(self.period, 2, n) @ shapes_changed(changes, n)
+        tips += found.strobes.reshape(self.m, 2, n) @ shapes_changed(changes, n)
         x = oscillator.tip(found.strobes[:, :n])
         return self._in_order(tips[:, : points.shape[1]], x).reshape(points.size, -1)
 
@@ -135,9 +135,9 @@ class Transitions(Prediction):
         """F/F_g - 1 at the folds."""
         for i, (frequency, period) in enumerate(self.record.rows[:, :2]):
             there = replace(oscillator, drive=replace(oscillator.driven, frequency=float(frequency)))
-            exact = Shooting(oscillator=there, period=int(period))
+            exact = Shooting(oscillator=there, m=int(period))
             if in_closed_form(oscillator.stop.law):
-                linear = MaximalFamily(oscillator=there, period=int(period)).fold()
+                linear = MaximalFamily(oscillator=there, m=int(period)).fold()
                 fold = exact.at_speed(linear.speed) if linear else None
             else:
                 fold = fold_of(exact, self.folds[i])

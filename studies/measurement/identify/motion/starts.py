@@ -104,7 +104,7 @@ def _strobes(
 
 
 def _searched(
-    record: Record, oscillator: ImpactOscillator, names: Sequence[str], period: int
+    record: Record, oscillator: ImpactOscillator, names: Sequence[str], m: int
 ) -> tuple[ImpactOscillator, SingleImpactOrbit]:
     """The oscillator and orbit p_m most like the record, its amplitude allowed to be a little off."""
     known, unit, kept = parameters_of(oscillator), oscillator.unit_speed, "amplitude" not in names
@@ -113,12 +113,12 @@ def _searched(
 
     def orbit_at(unknowns: Array) -> tuple[ImpactOscillator, SingleImpactOrbit]:
         at = with_values(oscillator, dict(zip(own, (unknowns[:-1] * sizes).tolist(), strict=True)))
-        return at, family_of(at, period).orbit(math.exp(unknowns[-1]) * unit)
+        return at, family_of(at, m).orbit(math.exp(unknowns[-1]) * unit)
 
     def off(unknowns: Array) -> Array:
         try:
             at, orbit = orbit_at(unknowns)
-            rows = ((Strobes(record, period, orbit).of_orbit() - record.observed) / scale).ravel()
+            rows = ((Strobes(record, m, orbit).of_orbit() - record.observed) / scale).ravel()
         except (ContactError, Refusal):
             return np.full(scale.size + 1, np.nan)
         drive = orbit.amplitude / at.driven.amplitude - 1.0
@@ -129,7 +129,7 @@ def _searched(
     costs = np.array([np.sum(off(start) ** 2) for start in starts])
     best = [starts[i] for i in np.argsort(costs)[:3] if np.isfinite(costs[i])]
     if not best:
-        raise NoAnswer(f"the scene has no p{period} with one impact at {oscillator.driven.frequency:g} Hz")
+        raise NoAnswer(f"the scene has no p{m} with one impact at {oscillator.driven.frequency:g} Hz")
     found = [least_squares(off, start, max_nfev=30, x_scale="jac") for start in best]
     return orbit_at(min(found, key=lambda one: one.cost).x)
 
@@ -174,7 +174,7 @@ def starts_at(
     soft = [name for name in ("stiffness", "delay") if name in names]
     sensor = {"offset": motion.offset, "phase": float(np.angle(drive)), "scale": sign * size}
     sensor = {name: sensor[name] if name in (*free, "scale") else one for name, one in SENSOR.items()}
-    lasting = motion.period * at.period
+    lasting = motion.m * at.period
     clock = np.linspace(0.0, lasting, LOOKED, endpoint=False)
     away = sensor["phase"] / at.driven.angular_frequency
     heights = [sign * motion.tip(t - away)[0] for t in clock]
@@ -196,7 +196,7 @@ def starts_at(
     moved = next((name for name in ("gap", "amplitude") if name in names), None)
     pairs = list[tuple[Displacement, ImpactOscillator]]()
     for one in [*(_behind(one, start, lowest, lasting) for one in tried), *given]:
-        prediction = Displacement(record, one, start, sensor, free, period=motion.period, clock=lowest)
+        prediction = Displacement(record, one, start, sensor, free, m=motion.m, clock=lowest)
         pairs.append((prediction, _closing(prediction, one, moved)))
     return pairs
 

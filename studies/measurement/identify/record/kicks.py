@@ -44,7 +44,7 @@ class Kicked:
     """
 
     oscillator: ImpactOscillator
-    period: int
+    m: int
     kicks: Array
     impulses: Array
     steady: complex
@@ -59,7 +59,7 @@ class Kicked:
         """
         one, w = self.oscillator, self.oscillator.driven.angular_frequency
         share = one.steady_response() / one.tip_response() * 2.0 * self.steady * np.exp(1j * w * time)
-        lasting = self.period * one.period
+        lasting = self.m * one.period
         ages = (time - self.kicks) % lasting
         ages = np.where(before & (ages < 1e-9 * lasting), lasting, ages)
         pole = poles(one)
@@ -97,16 +97,16 @@ def poles(oscillator: ImpactOscillator) -> Complex:
 class Search:
     """The kicks of a record of `oscillator` at its drive frequency, given that it repeats after `period`."""
 
-    def __init__(self, times: Array, values: Array, oscillator: ImpactOscillator, period: int) -> None:
+    def __init__(self, times: Array, values: Array, oscillator: ImpactOscillator, m: int) -> None:
         known, self.leading = parameters_of(oscillator), oscillator.model.leading_mode
         self.given = known["free_period"].value, max(known["decay_rate"].value, 1e-3 / oscillator.period)
-        self.oscillator, self.period = with_values(oscillator, {"decay_rate": self.given[1]}), period
-        self.base = oscillator.driven.frequency / period
+        self.oscillator, self.m = with_values(oscillator, {"decay_rate": self.given[1]}), m
+        self.base = oscillator.driven.frequency / m
         count = count_of(times, self.base)
         self.seen, noise = harmonics(times, values, self.base, count)
         self.error = max(noise, 1e-9 * float(np.ptp(values))) / math.sqrt(2.0 * times.size)
         order = np.arange(count + 1)
-        self.used, self.w = (order > 0) & (order != period), 2.0 * math.pi * self.base * order
+        self.used, self.w = (order > 0) & (order != m), 2.0 * math.pi * self.base * order
 
     def response(self, logs: Sequence[float]) -> Complex:
         """G at the harmonics, of the oscillator with exp(logs) as its free period and decay rate."""
@@ -187,7 +187,7 @@ class Search:
             times, gains = self.gains(response, kicks)
             apart = np.abs(np.sin(math.pi * self.base * (times[:, None] - kicks))).min(axis=1)
             way = math.copysign(1.0, self.impulses(self.waves(response, kicks))[0])
-            gains = np.where(apart > math.sin(math.pi * APART / self.period), way * gains, -math.inf)
+            gains = np.where(apart > math.sin(math.pi * APART / self.m), way * gains, -math.inf)
             kicks = np.append(kicks, times[int(np.argmax(gains))])
         return best
 
@@ -212,11 +212,11 @@ class Search:
         waves, (period, rate) = self.waves(self.response(logs), kicks), np.exp(logs).tolist()
         impulses = self.impulses(waves)
         rest = self.seen - waves @ impulses
-        steady, offset = complex(rest[self.period]), float(rest[0].real)
+        steady, offset = complex(rest[self.m]), float(rest[0].real)
         without = float(np.sum(np.abs(self.seen[self.used]) ** 2)) / self.error**2
         at = with_values(self.oscillator, {"free_period": period, "decay_rate": rate})
         kicks = kicks % (1.0 / self.base)
-        return Kicked(at, self.period, kicks, impulses, steady, offset, cost, without)
+        return Kicked(at, self.m, kicks, impulses, steady, offset, cost, without)
 
 
 def kicked_motions(

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from beam import InvalidValue
 from contact import ContactError, ImpactOscillator, StroboscopicMap, simulate
-from contact.orbits import Shooting, born
+from contact.orbits import Shooting, onset_orbit
 from studies import letter
 
 Array = NDArray[np.float64]
@@ -28,8 +28,8 @@ HEADINGS: dict[tuple[str, ...], Kind] = {
     ("x_m",): "strobe",
     ("x_m", "v_m_per_s"): "strobe",
     ("time_s", "x_m"): "displacement",
-    ("frequency_hz", "period", "excess"): "transitions",
-    ("frequency_hz", "period", "excess", "error"): "transitions",
+    ("frequency_hz", "m", "excess"): "transitions",
+    ("frequency_hz", "m", "excess", "error"): "transitions",
 }
 NOTES = ("frequency_hz", "amplitude_m")
 FEWEST = {"strobe": 4, "displacement": 40, "transitions": 1}  # rows that each kind needs
@@ -184,11 +184,14 @@ def synthetic(
     if kind == "transitions":
         there = [replace(oscillator, drive=replace(drive, frequency=f)) for f, _ in transitions]
         pairs = zip(there, transitions, strict=True)
-        folds = [Shooting(oscillator=one, period=m).fold() for one, (_, m) in pairs]
+        folds = [Shooting(oscillator=one, m=m).fold() for one, (_, m) in pairs]
         found = [[*at, one.excess] for at, one in zip(transitions, folds, strict=True) if one is not None]
-        record = Record(columns=("frequency_hz", "period", "excess"), rows=np.array(found))
+        record = Record(columns=("frequency_hz", "m", "excess"), rows=np.array(found))
     else:
-        start, strobes = born(StroboscopicMap(oscillator=oscillator), oscillator.excess).end, kind == "strobe"
+        start, strobes = (
+            onset_orbit(StroboscopicMap(oscillator=oscillator), oscillator.excess).end,
+            kind == "strobe",
+        )
         begin, each = round(start.time * drive.frequency) / drive.frequency, 1.0 if strobes else 90.09
         times = np.arange(int(periods * each)) / (each * drive.frequency)
         motion = simulate(oscillator, start, periods=periods + 1, times=np.maximum(start.time, begin + times))

@@ -40,12 +40,12 @@ def added(times: Array, residuals: Array, base: float, part: float = 0.0) -> lis
     return found
 
 
-def walked(times: Array, values: Array, frequency: float, period: int) -> list[str]:
+def walked(times: Array, values: Array, frequency: float, m: int) -> list[str]:
     """A drive that is off: the orbit of another frequency leaves less of the record."""
     span, lines = times[-1] - times[0], peaks(times, values)[0]
     near = lines[np.argmin(np.abs(lines - frequency))] + np.array([-0.1, 0.1]) / span
-    best = minimize_scalar(lambda at: orbit_of(times, values, at / period)[1], bounds=near, method="bounded")
-    if best.fun > 0.8 * orbit_of(times, values, frequency / period)[1]:
+    best = minimize_scalar(lambda at: orbit_of(times, values, at / m)[1], bounds=near, method="bounded")
+    if best.fun > 0.8 * orbit_of(times, values, frequency / m)[1]:
         return []
     walk = f"{2.0 * math.pi * abs(best.x - frequency) * span:.2g} rad"
     return [f"the phase of the drive walks by {walk}: the drive is at {best.x:.7g} Hz, not {frequency:.7g}"]
@@ -80,14 +80,14 @@ def wanders(times: Array, values: Array, residuals: Array, frequency: float) -> 
     return []
 
 
-def contradictions(times: Array, values: Array, residuals: Array, frequency: float, period: int) -> list[str]:
+def contradictions(times: Array, values: Array, residuals: Array, frequency: float, m: int) -> list[str]:
     """What residuals show that are no noise; the drive is at `frequency` [Hz], a `period` 0 is unknown."""
-    period = period or repetition(times, values, frequency)
-    base, bare = frequency / period, np.abs(residuals - medfilt(residuals, 5))
+    m = m or repetition(times, values, frequency)
+    base, bare = frequency / m, np.abs(residuals - medfilt(residuals, 5))
     off = 3.0 * off_neighbours(times, values)[0]
     stray = np.minimum(bare / (1.4826 * np.median(bare[bare > 0.0])), off)
     found = added(times, residuals, base) + poor_rows(times, values, stray, frequency)
-    found += walked(times, values, frequency, period)
+    found += walked(times, values, frequency, m)
     found = found or filtered(times, values, values - residuals, base)
     found = found or wanders(times, values, residuals, frequency)
     return found or ["the model is too small for the record"]
