@@ -117,11 +117,8 @@ def collisions(trajectory: Trajectory, *, unfinished: str = "refuse") -> list[Co
         What to do with a last collision that is not final when the trajectory ends.
     """
     trajectory = require_kind("trajectory", trajectory, Trajectory, "a Trajectory, from simulate")
-    numbers, impacts, k = (
-        trajectory.oscillator.numbers(),
-        trajectory.impacts,
-        trajectory.oscillator.model.leading_mode,
-    )
+    oscillator, impacts = trajectory.oscillator, trajectory.impacts
+    numbers, k = oscillator.numbers(), oscillator.model.leading_mode
     single = with_only_mode(numbers, k)
     words = "load drives a higher mode of zero frequency; for a virtual motion it must be zero there"
     require(not np.delete(numbers.row(LOAD), k).any(), words)

@@ -165,7 +165,7 @@ class Trajectory:
         arrays = {name: getattr(self, name) for name in _ARRAYS}
         arrays |= {f"impacts_{name}": getattr(self.impacts, name) for name in _COLUMNS}
         arrays |= {f"end_{name}": np.asarray(getattr(self.end, name)) for name in _STATE}
-        np.savez_compressed(path, values=_fingerprint(self.oscillator), **arrays)
+        np.savez_compressed(path, numbers=_fingerprint(self.oscillator), **arrays)
 
     @staticmethod
     def load(path: str | Path, oscillator: ImpactOscillator) -> Trajectory:

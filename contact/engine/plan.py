@@ -12,7 +12,7 @@ from contact.trajectory import State
 MOST_STORED = 2.0**28  # largest number of values in the strobes of one run: 2 GB
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Plan:
     """What a simulation has to do: its start and end, and the times at which its states are wanted."""
 
@@ -62,14 +62,4 @@ def plan_of(
     sample_stretch[late], sample_clock[late] = last, clock_end
     early = (sample_stretch < first) | ((sample_stretch == first) & (sample_clock < clock))
     sample_stretch[early], sample_clock[early] = first, clock
-    return Plan(
-        start=start,
-        length=length,
-        first=first,
-        last=last,
-        clock=clock,
-        clock_end=clock_end,
-        times=wanted,
-        sample_stretch=sample_stretch,
-        sample_clock=sample_clock,
-    )
+    return Plan(start, length, first, last, clock, clock_end, wanted, sample_stretch, sample_clock)

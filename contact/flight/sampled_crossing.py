@@ -73,8 +73,7 @@ def first_sampled_crossing(numbers, flight, base, duration, contact_order, sampl
             return CROSSES, root_between(numbers, flight, base, s, until, margin), count
         if rate > 0.0 and new_rate < 0.0:
             middle = 0.5 * (s + until)
-            y0, y1, y2 = tip_now(numbers, flight, base, middle)
-            point = (middle, y0, y1, y2)
+            point = (middle, *tip_now(numbers, flight, base, middle))
             peak = find_peak(numbers, flight, base, point, (s, until), math.inf, margin)
             count += 1
             if tip_now(numbers, flight, base, peak)[0] > margin:

@@ -70,8 +70,8 @@ def find_root(numbers, flight, base, point, bracket, m3, margin):
 def root_between(numbers, flight, base, low, high, margin):
     """The root of the tip displacement in [low, high] [s]."""
     middle = 0.5 * (low + high)
-    y0, y1, y2 = tip_now(numbers, flight, base, middle)
-    return find_root(numbers, flight, base, (middle, y0, y1, y2), (low, high), math.inf, margin)
+    point = (middle, *tip_now(numbers, flight, base, middle))
+    return find_root(numbers, flight, base, point, (low, high), math.inf, margin)
 
 
 @kernel

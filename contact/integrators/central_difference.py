@@ -26,15 +26,7 @@ import numpy as np
 from contact.flight.numbers import DECAY, Numbers
 from contact.flight.tip import push_on
 from contact.integrators.fixed_step import FixedStep, stiffness_at
-from contact.integrators.grid import (
-    DONE,
-    Grid,
-    accelerations,
-    contact_force,
-    end_contact_step,
-    force_in_flight,
-    tip_of,
-)
+from contact.integrators.grid import DONE, Grid, accelerations, contact_at, end_contact_step, force_in_flight
 from contact.machine.compiled import kernel
 
 
@@ -42,13 +34,12 @@ from contact.machine.compiled import kernel
 def central_difference(grid, memory):
     """Steps from the grid point reached; memory: v_{n+1/2}, shape (n_modes,), and whether damping lags."""
     half, lagged = memory
-    progress, h, q, v, numbers = grid.progress[0], grid.step, grid.q, grid.v, grid.numbers
-    while progress.step < grid.steps:
+    progress, h, q, v, numbers, status = grid.progress[0], grid.step, grid.q, grid.v, grid.numbers, DONE
+    while status == DONE and progress.step < grid.steps:
         for k in range(q.size):
             q[k] += h * half[k]
         sine = math.sin(numbers.drive * (grid.clock + (progress.step + 1) * h))
-        depth, rate = tip_of(numbers, q, half)
-        push = contact_force(numbers, depth, rate)
+        depth, _rate, push = contact_at(numbers, q, half)
         for k in range(q.size):
             old = half[k]
             new = old + h * (force_in_flight(grid, k, sine, q, half) + push_on(numbers, k, push))
@@ -57,9 +48,7 @@ def central_difference(grid, memory):
                 new = (new + c * old) / (1.0 + c)
             half[k], v[k] = new, 0.5 * (old + new)
         status = end_contact_step(grid, None, 1, depth, depth < 0.0, None)
-        if status != DONE:
-            return status
-    return DONE
+    return status
 
 
 @dataclass(frozen=True, kw_only=True)

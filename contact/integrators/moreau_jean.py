@@ -50,14 +50,7 @@ from contact.flight.numbers import DECAY, SQUARE, Numbers
 from contact.flight.tip import push_on
 from contact.integrators.fixed_step import FixedStep
 from contact.integrators.generalised_alpha import AlphaParameters, AlphaState, alpha_state, predict, stable
-from contact.integrators.grid import (
-    DONE,
-    Grid,
-    cubic_interpolation,
-    force_in_flight,
-    make_end_of_step,
-    tip_of,
-)
+from contact.integrators.grid import DONE, Grid, cubic_interpolation, force_in_flight, make_end_step, tip_of
 from contact.laws import NEWTON
 from contact.machine.compiled import inlined, kernel
 from contact.touch.newton import restitution_at
@@ -99,7 +92,7 @@ def write_percussion(grid, corner, span, _depth, push):
         marks.touching = 1
 
 
-end_step = make_end_of_step(path_with_corner, write_percussion)
+end_step = make_end_step(path_with_corner, write_percussion)
 
 
 def before_percussions(parameters: AlphaParameters, grid: Grid) -> tuple[AlphaState, float]:
@@ -115,9 +108,9 @@ def through_percussions(grid, prepared):
     """Steps from the grid point reached, with `prepared` by `before_percussions`."""
     alpha, mobility = prepared
     parameters, a, f, inertia = alpha
-    progress, h, q, v, numbers = grid.progress[0], grid.step, grid.q, grid.v, grid.numbers
+    progress, h, q, v, numbers, status = grid.progress[0], grid.step, grid.q, grid.v, grid.numbers, DONE
     modes, new, eta = numbers.modes, 1.0 - parameters.alpha_f, parameters.eta
-    while progress.step < grid.steps:
+    while status == DONE and progress.step < grid.steps:
         sine = math.sin(numbers.drive * (grid.clock + (progress.step + 1) * h))
         depth, before = tip_of(numbers, q, v)
         predict(grid, alpha, sine)
@@ -135,9 +128,7 @@ def through_percussions(grid, prepared):
             f[k] = force_in_flight(grid, k, sine, q, v)
         depth, _rate = tip_of(numbers, q, v)
         status = end_step(grid, 1.0 - eta, 1, depth, push == 0.0, push)
-        if status != DONE:
-            return status
-    return DONE
+    return status
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -33,13 +33,7 @@ import numpy as np
 from contact.flight.modal_flow import flow_over, propagate
 from contact.flight.numbers import LOAD, OMEGA
 from contact.flight.tip import at_tip, push_on, tip_bound, tip_sum
-from contact.integrators.grid import (
-    DONE,
-    contact_force,
-    contact_tangent,
-    make_contact_writer,
-    make_end_of_step,
-)
+from contact.integrators.grid import DONE, contact_force, contact_tangent, make_contact_writer, make_end_step
 from contact.machine.compiled import inlined, kernel
 
 RENEW = 32
@@ -149,7 +143,7 @@ def shorter_step(grid, split, x, h, with_force):
     return depth, tip_rate(numbers, v, sine, cosine)
 
 
-end_split_step = make_end_of_step(shorter_step, make_contact_writer(shorter_step))
+end_split_step = make_end_step(shorter_step, make_contact_writer(shorter_step))
 
 
 @kernel
@@ -167,8 +161,8 @@ def clear_steps(numbers, depth, u, v, h):
 def split_steps(grid, split):
     """Steps from the grid point reached, with deviations from the steady motion; `split`: see `take_step`."""
     numbers, progress, h, u, v = grid.numbers, grid.progress[0], grid.step, grid.q, grid.v
-    tip, look = tip_at(numbers, u, grid.clock + progress.step * h), progress.step
-    while progress.step < grid.steps:
+    tip, look, status = tip_at(numbers, u, grid.clock + progress.step * h), progress.step, DONE
+    while status == DONE and progress.step < grid.steps:
         count, before, given, touched = 1, tip[0], (0.0, 0.0, 0.0), False
         if progress.step >= look and before < 0.0 and grid.recorder.marks[0].touching == 0:
             count = int(min(clear_steps(numbers, before, u, v, h), grid.steps - progress.step))
@@ -182,6 +176,4 @@ def split_steps(grid, split):
             tip = tip_at(numbers, u, grid.clock + (progress.step + count) * h)
         no_contact = tip[0] <= 0.0 and not touched
         status = end_split_step(grid, split, count, tip[0], no_contact, (before, given, touched))
-        if status != DONE:
-            return status
-    return DONE
+    return status

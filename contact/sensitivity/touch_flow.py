@@ -134,5 +134,5 @@ def flow_error(outcome: int, time: float, velocity: float, detail: str) -> Conta
     """The error of a flow that did not reach its end, from a touch at `time` [s] with `velocity` [m/s]."""
     if outcome == TOO_STIFF:
         detail = f"more than {MOST_STEPS} steps in one touch, or a step of no length"
-        return ContactTooStiff(time=time, gap=0.0, velocity=velocity, detail=detail)
-    return NotPeriodic(time=time, gap=0.0, velocity=velocity, detail=detail)
+    kind = ContactTooStiff if outcome == TOO_STIFF else NotPeriodic
+    return kind(time=time, velocity=velocity, detail=detail)

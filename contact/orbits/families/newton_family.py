@@ -72,13 +72,8 @@ class NewtonFamily:
         orbit, miss, flow = shoot(Sensitivities(oscillator=here), at, start, self.m, self.impacts, speed)
         stretch = np.append(self._sizes, speed)
         closing = flow @ np.vstack([np.eye(n, size), rows]) - np.eye(n, size)
-        return Iterate(
-            orbit,
-            miss / self._sizes,
-            closing * stretch / self._sizes[:, None],
-            drive @ rows * stretch / (orbit.amplitude * grazing),
-            speed * np.eye(size)[-1],
-        )
+        slopes = drive @ rows * stretch / (orbit.amplitude * grazing), speed * np.eye(size)[-1]
+        return Iterate(orbit, miss / self._sizes, closing * stretch / self._sizes[:, None], *slopes)
 
     def _solve(self, x: Array, *, speed: float | None = None, excess: float = 0.0) -> PeriodicOrbit:
         """The orbit next to `x` with its approach speed, or with this excess [1]."""
@@ -121,8 +116,7 @@ class NewtonFamily:
         hits = trajectory.impacts.kind == ImpactKind.IMPACT
         hits[:1] &= state.regime == Regime.OUTSIDE  # a contact under way began with a touch that is not known
         if not np.any(hits):
-            words = "the motion has no impact to start from"
-            raise NotPeriodic(time=state.time, gap=0.0, velocity=0.0, detail=words)
+            raise NotPeriodic(time=state.time, detail="the motion has no impact to start from")
         i = int(np.flatnonzero(hits)[0])
         start = self.unknowns(trajectory.impacts.deviations_start[i].ravel(), trajectory.impacts.approach[i])
         return self._solve(start, excess=self.oscillator.excess)

@@ -56,7 +56,7 @@ class Exponents:
 def _finite(matrix: Array) -> Array:
     """The matrix; NoDerivative if it has left the range of numbers."""
     if not np.all(np.isfinite(matrix)):
-        raise NoDerivative(time=0.0, gap=0.0, velocity=0.0, detail="the derivatives are not finite")
+        raise NoDerivative(detail="the derivatives are not finite")
     return matrix
 
 
@@ -106,8 +106,7 @@ def orbit_exponents(strobed: DifferentiableMap[S], state: S, m: int) -> Exponent
     done = 0
     while done % m or done == 0:  # a strobe in contact is never the last: m periods later it is again
         if done > MOST_STRETCHES * m:
-            words = "every strobe of the orbit is in contact"
-            raise NotPeriodic(time=0.0, gap=0.0, velocity=0.0, detail=words)
+            raise NotPeriodic(detail="every strobe of the orbit is in contact")
         found, state = strobed.jacobians(state, m - done % m)
         for step, span in found:
             matrix, done = _finite(step @ matrix), done + span
