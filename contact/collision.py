@@ -135,10 +135,9 @@ def collisions(trajectory: Trajectory, *, unfinished: str = "refuse") -> list[Co
         if not impacts.end[last] + minimum <= trajectory.end.time:
             if unfinished == "drop" or under_way:
                 break
-            raise InvalidValue(
-                f"trajectory ends at {trajectory.end.time:.6g} s, before the collision that began at "
-                f"{impacts.start[first]:.6g} s is final; run it about one drive period longer"
-            )
+            given = f"{trajectory.end.time:.6g} s, before the collision that began at"
+            words = f"{impacts.start[first]:.6g} s is final; run it about one drive period longer"
+            raise InvalidValue(f"trajectory ends at {given} {words}")
         if not under_way:
             found.append(_measure(numbers, k, impacts, slice(first, last + 1), outgoing))
     return found

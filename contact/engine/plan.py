@@ -41,10 +41,9 @@ def plan_of(
     whole = 0 if periods is None else require_whole("periods", periods, "drive periods")
     length = whole * period if whole else require_within("duration", duration, "s", above=0)
     if length / period * 2 * oscillator.n_modes > MOST_STORED:
-        raise InvalidValue(
-            f"duration is {length:g} s, {length / period:g} drive periods with {oscillator.n_modes} modes; "
-            f"the strobes kept must stay below {MOST_STORED:g} numbers, so run it in pieces"
-        )
+        given = f"{length:g} s, {length / period:g} drive periods with {oscillator.n_modes} modes"
+        words = f"the strobes kept must stay below {MOST_STORED:g} numbers, so run it in pieces"
+        raise InvalidValue(f"duration is {given}; {words}")
     first, clock = (x.item() for x in split_time(start.time, period))
     last, clock_end = first + whole, clock
     if not whole:

@@ -120,10 +120,8 @@ def start_of_several(
     views, regimes = views_of(numbers), state.regimes
     words = f"it must be the number of one of {len(views)} stops, from 0 on"
     require(state.stop < len(views), f"stop of the state is {state.stop} [1]; {words}")
-    found = [
-        start_of(seen, replace(state, regime=regimes.get(j, OUTSIDE), stop=j), stretch, clock)
-        for j, seen in enumerate(views)
-    ]
+    starts = [replace(state, regime=regimes.get(j, OUTSIDE), stop=j) for j in range(len(views))]
+    found = [start_of(seen, own, stretch, clock) for seen, own in zip(views, starts, strict=True)]
     u, v, stops = *found[0][:2], np.concatenate([runs for _u, _v, runs in found])
     acting = np.flatnonzero(stops["regime"] != OUTSIDE)
     run = stops[acting[:1]] if acting.size else stops[:1].copy()

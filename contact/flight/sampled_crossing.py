@@ -55,9 +55,7 @@ def first_sampled_crossing(numbers, flight, base, duration, contact_order, sampl
     height, rate, _acceleration = tip_state(numbers, base, u, v)
     if contact_order == 0 and height >= -margin and rate > 0.0:
         return CROSSES, 0.0, count
-    su, sv = u.copy(), v.copy()
-    j = int(base / spacing)
-    s = 0.0
+    su, sv, s, j = u.copy(), v.copy(), 0.0, int(base / spacing)
     while s < duration:
         j += 1
         until = min(j * spacing - base, duration)

@@ -46,10 +46,7 @@ def find_root(numbers, flight, base, point, bracket, m3, margin):
     for _ in range(200):
         if abs(y0) <= 0.05 * margin:
             return s
-        if y0 < 0.0:
-            low = s
-        else:
-            high = s
+        low, high = (s, high) if y0 < 0.0 else (low, s)
         square = y1 * y1 - 2.0 * y0 * y2
         new = low
         if y1 > 0.0 and square > 0.0:
@@ -82,10 +79,7 @@ def find_peak(numbers, flight, base, point, bracket, m3, margin):
     for _ in range(200):
         if y1 == 0.0:
             return s
-        if y1 > 0.0:
-            low = s
-        else:
-            high = s
+        low, high = (s, high) if y1 > 0.0 else (low, s)
         new = s - y1 / y2 if y2 < 0.0 else 0.5 * (low + high)
         if not (low < new < high):
             new = 0.5 * (low + high)

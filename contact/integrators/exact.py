@@ -7,11 +7,10 @@ file differ only in the search for the next touch.
 
 `Exact` proves that it misses none, by a search of the package (``contact.flight.crossing``).
 
-`SampledFlight` is the scheme of the letter: "An efficient numerical scheme for solving Eq. (1) in the
-presence of grazing impacts uses the analytical solutions for the motion between impacts" (note [11]).  It
-takes positions at k instants of each drive period, and at the turning points that their velocities betray.
-``contact.flight.sampled_crossing`` says which touches it misses.  One mode needs few samples.  With N modes k
-has to follow the ringing of the highest, and nothing shows that it was too small.
+`SampledFlight` is the scheme of that note: "An efficient numerical scheme for solving Eq. (1) in the presence
+of grazing impacts uses the analytical solutions for the motion between impacts".  It samples the tip at k
+instants of each drive period (``contact.flight.sampled_crossing``).  One mode needs few samples.  With N
+modes k has to follow the ringing of the highest, and nothing shows that it was too small.
 """
 
 import math

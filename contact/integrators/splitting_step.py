@@ -30,9 +30,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from contact.flight.modal_flow import flow_over, propagate
+from contact.flight.modal_flow import apply_flow, flow_over, propagate
 from contact.flight.numbers import LOAD, OMEGA
-from contact.flight.tip import at_tip, push_on, tip_bound, tip_sum
+from contact.flight.tip import push_on, tip_bound, tip_sum
 from contact.integrators.grid import DONE, contact_force, contact_tangent, make_contact_writer, make_end_step
 from contact.machine.compiled import inlined, kernel
 
@@ -123,11 +123,8 @@ def take_step(numbers, split, length, tip, u, v, with_force):
         c, s = flow[n, 0], flow[n, 1]
         sine, cosine = c * sine + s * cosine, c * cosine - s * sine
         depth = numbers.level + numbers.tip_sine * sine + numbers.tip_cosine * cosine
-        for k in range(n):
-            uk, vk = u[k], v[k]
-            u[k] = flow[k, 0] * uk + flow[k, 1] * vk + flow[k, 4]
-            v[k] = flow[k, 2] * uk + flow[k, 3] * vk + flow[k, 5]
-            depth += at_tip(numbers, k, u[k])
+        apply_flow(flow, u, v)
+        depth = tip_sum(numbers, depth, u)
     return (depth, sine, cosine), (loss, impulse, largest), touched
 
 

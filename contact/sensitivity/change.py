@@ -189,14 +189,10 @@ def change_along(path: Path, p: float, low: float, high: float) -> Change:
     rows = np.array([_numbers(path(q)) for q in middle + STENCIL * stride])
     powers = np.vander((middle - p) / stride + STENCIL, increasing=True)
     rates, n = np.linalg.solve(powers, rows)[1] / stride, (rows.shape[1] - 5) // 4
-    *model, (gap, first, second, frequency, amplitude) = np.split(rates, n * np.arange(1, 5))
-    return Change(
-        model=ModalChange(**dict(zip(ARRAYS, model, strict=True))),
-        gap=float(gap),
-        law=(float(first), float(second)),
-        frequency=float(frequency),
-        amplitude=float(amplitude),
-    )
+    *arrays, others = np.split(rates, n * np.arange(1, 5))
+    model = ModalChange(**dict(zip(ARRAYS, arrays, strict=True)))
+    gap, first, second, frequency, amplitude = others.tolist()
+    return Change(model=model, gap=gap, law=(first, second), frequency=frequency, amplitude=amplitude)
 
 
 def _numbers(oscillator: ImpactOscillator) -> Array:

@@ -83,8 +83,7 @@ def open_touch(record, stop, stretch, clock, approach, kind, u, v):
     row, n = record.log[i], u.size
     row.stretch, row.start, row.end_stretch, row.end = stretch, clock, stretch, math.nan
     row.approach, row.rebound, row.loss, row.kind, row.stop = approach, math.nan, 0.0, kind, stop
-    row.impulse = row.peak_force = math.nan
-    row.together = 0
+    row.impulse, row.peak_force, row.together = math.nan, math.nan, 0
     put_state(record.log_state[i], 0, u, v)
     record.log_state[i, 2 * n :] = math.nan
 

@@ -1,8 +1,7 @@
 """Families of periodic orbits followed over the drive amplitude, with their folds and other events.
 
-A family is followed in the arc length of its unknowns, of which the last is log v, v the approach velocity of
-the first touch (``contact.orbits.families.newton_family``).  Down to grazing a step changes v by a
-factor.  With several touches v can turn round along the curve (``contact.orbits.branches.branch``).
+The curve is that of ``contact.orbits.branches.amplitude_curve``.  Down to grazing a step changes the approach
+velocity by a factor.  With several touches this velocity can turn round along the curve.
 """
 
 from contextlib import suppress

@@ -11,8 +11,7 @@ number is only a sign:
                       two curves cross, as where an orbit of 2m periods runs through one of m
     grazing           +1 or -1: the tip gains or loses a touch of the stop (certified flights)
 
-An event is certain if a multiplier is where it must be, if the located orbit lies on the curve of its
-neighbours, and if no other event lies next to it.  Otherwise it is called "undecided".
+`Event` says when an event is called "undecided".
 """
 
 from collections.abc import Callable, Sequence

@@ -15,7 +15,7 @@ import numpy as np
 
 from beam.parameters import Array, require, require_kind, require_whole, require_within
 from contact.errors import NotPeriodic
-from contact.orbits.families.equations import driven_at, shoot, sizes_of
+from contact.orbits.families.equations import STEEPEST, driven_at, shoot, sizes_of
 from contact.orbits.families.kick import KickFamily
 from contact.orbits.families.newton import Iterate, newton
 from contact.orbits.families.touch_orbit import PeriodicOrbit
@@ -23,10 +23,6 @@ from contact.oscillator import ImpactOscillator
 from contact.sensitivity.change import Sensitivities
 from contact.simulation import simulate
 from contact.trajectory import ImpactKind, Regime, State
-
-STEEPEST = 1e10
-"""Change of an unknown along the branch, over that of the approach speed, both in units of their size.
-Beyond this value it is rounding: the approach speed does not tell an orbit from its neighbours."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -4,11 +4,9 @@ J_n is the derivative of the period map at the n-th strobe.  With Q R = J_n Q', 
 
     lambda_i = < log |R_ii| >        [per drive period],  largest first.
 
-For an impact oscillator J_n comes from the variational replay of the motion
-(``contact.sensitivity.replay``).  A strobe that falls into a contact is passed over: that J_n spans more than
-one period.
-On an orbit of period m the exponents are log|mu_i|/m, with mu_i the eigenvalues of J_m ... J_1.  For Eq. (1)
-of the letter (1996) the determinants give
+For an impact oscillator J_n comes from ``contact.sensitivity.replay``.  A strobe that falls into a contact is
+passed over: that J_n spans more than one period.  On an orbit of period m the exponents are log|mu_i|/m, with
+mu_i the eigenvalues of J_m ... J_1.  For Eq. (1) of the letter (1996) the determinants give
 
     sum of lambda_i = -mu/f + 2 log(tau) x impacts per period.
 

@@ -106,9 +106,7 @@ def settle(
     largest_m = require_whole("largest_m", largest_m, "drive periods")
     fine = require_within("tolerance", tolerance, "[1]", low=0) * strobed.scale
     block, cycles = 2 * largest_m, 0
-    proof: Any = None
-    if prove and isinstance(strobed, StroboscopicMap):
-        proof = _Proof(strobed, largest_m, fine)
+    proof: Any = _Proof(strobed, largest_m, fine) if prove and isinstance(strobed, StroboscopicMap) else None
     while True:
         strobes = strobed.orbit(state, block)
         state, cycles = strobes.end, cycles + block
