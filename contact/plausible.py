@@ -33,10 +33,8 @@ def suspect_sizes(model: ModalModel, gap: float, drive: HarmonicDrive | None) ->
     given = f"frequency of the drive is {drive.frequency:g}"
     highest, turn = float(model.omega.max()), 2.0 * math.pi
     if 0.0 < HIGHEST_DRIVE * highest < drive.angular_frequency:
-        words = (
-            f"the highest retained mode at {highest / turn:g} Hz; modes that the drive excites are missing"
-        )
-        suspect(f"{given} Hz, far above {words}")
+        above = f"far above the highest retained mode at {highest / turn:g} Hz"
+        suspect(f"{given} Hz, {above}; modes that the drive excites are missing")
     lowest = min((x for x in model.omega.tolist() if x > 0.0), default=0.0)
     if drive.angular_frequency < SLOWEST_DRIVE * lowest:
         words = f"at {lowest / turn:g} Hz; the spring then follows its base and does not bend"

@@ -73,9 +73,8 @@ def reached(law: SimpleNamespace) -> Callable[..., tuple[float, float]]:
         low, high = (-1.0, -1.0) if first < 0.0 else (0.0, length)
         for _ in range(60):
             middle = 0.5 * (low + high)
-            low, high = (
-                (middle, high) if series_variable(numbers, middle, s, series) < first else (low, middle)
-            )
+            before = series_variable(numbers, middle, s, series) < first
+            low, high = (middle, high) if before else (low, middle)
         return first, high
 
     return kernel(reaches)

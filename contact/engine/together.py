@@ -49,10 +49,8 @@ def meet_ties(numbers, run, stops, u, v, sets):
             _height, rate, _pull = tip_state(slow, run.clock, u, v)
             for i in range(stops.size):
                 height, faster, _pull = tip_state(seen_from(numbers, i), run.clock, u, v)
-                late, follows = (
-                    -height / max(faster, rate),
-                    stops[i].regime == OUTSIDE and faster > rate > 0.0,
-                )
+                late = -height / max(faster, rate)
+                follows = stops[i].regime == OUTSIDE and faster > rate > 0.0
                 if follows and late * rate <= tip_rounding(slow, u, v):
                     later = max(later, late)
     if later > 0.0:

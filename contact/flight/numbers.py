@@ -184,7 +184,7 @@ def _seen_from(numbers, j):
     modes, steady = numbers.modes[top : top + NUMBERS], (own[1], own[2], own[3])
     law = int(code[0]), code[1], code[2]
     table = numbers.table[0][first : first + rows * columns].reshape(rows, columns)
-    shared, drive, speeds = numbers[4:6], numbers[7:9], numbers[14:17]
+    shared, drive, speeds = numbers[4:6], numbers[7:9], numbers[14:17]  # the same for every stop
     return Numbers(modes, *steady, *shared, own[0], *drive, own[4], own[5], *law, *speeds, table)
 
 

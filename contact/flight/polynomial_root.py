@@ -56,9 +56,8 @@ def first_polynomial_root(coefficients, sign, end, margin):
             low, high = s, s + step
             for _ in range(60):
                 middle = 0.5 * (low + high)
-                low, high = (
-                    (middle, high) if horner(coefficients, sign, 0.0, middle)[1] > 0.0 else (low, middle)
-                )
+                rises = horner(coefficients, sign, 0.0, middle)[1] > 0.0
+                low, high = (middle, high) if rises else (low, middle)
             if horner(coefficients, sign, 0.0, low)[0] > margin:
                 return polynomial_root(coefficients, sign, 0.0, s, low)
             s += step

@@ -1,7 +1,8 @@
 """The nonsmooth generalised-alpha method: smooth motion of order 2, impacts as percussions within a step.
 
 The velocity is split into a smooth part, followed by the generalised-alpha method (``generalised_alpha``),
-and the jump w = -phi p of the step, with f, the percussion p and its conditions as in ``moreau_jean``,
+and the jump w = -phi p of the step.  The force f, the tip velocity U, the restitution e and the conditions on
+the percussion p are as in ``moreau_jean``:
 
     (1 - alpha_m) a_{n+1} + alpha_m a_n = (1 - alpha_f) f_{n+1} + alpha_f f_n
     v_{n+1} = v_n + h ((1 - gamma) a_n + gamma a_{n+1}) + w
