@@ -17,7 +17,7 @@ import numpy as np
 
 from contact import touch
 from contact.engine import contacts
-from contact.engine.contacts import CROSSED, DONE, GOING, GRAZED, LOG_FULL, MOST_STEPS, follow_contact
+from contact.engine.contacts import CROSSED, DONE, FAILED_CHATTER, GOING, GRAZED, LOG_FULL, MOST_STEPS
 from contact.engine.recorder import sample_due, sample_flight, strobe
 from contact.engine.sets import follow_several
 from contact.engine.together import instant, meet_several
@@ -144,13 +144,13 @@ def advance(numbers, u, v, runs, last, clock_end, recorder, samples, sets=None):
         if is_full(recorder, rows):
             status = LOG_FULL
         elif recorder.marks[0].impacts > MOST_IMPACTS:
-            status = contacts.FAILED_CHATTER
+            status = FAILED_CHATTER
         elif run.steps > MOST_STEPS:
             status = contacts.FAILED_STEPS
         elif run.regime == OUTSIDE:
             status = follow_flights(numbers, u, v, run, (last, clock_end), space, recorder, samples, sets)
         elif sets is None:
-            status = follow_contact(numbers, u, v, run, last, clock_end, space, recorder)
+            status = contacts.follow_contact(numbers, u, v, run, last, clock_end, space, recorder)
         else:
             status = follow_several(numbers, u, v, run, last, clock_end, space, recorder, sets)
         if status == CROSSED or status == GRAZED:

@@ -26,7 +26,15 @@ import numpy as np
 from contact.flight.numbers import DECAY, Numbers
 from contact.flight.tip import push_on
 from contact.integrators.fixed_step import FixedStep, stiffness_at
-from contact.integrators.grid import DONE, Grid, accelerations, contact_at, end_contact_step, force_in_flight
+from contact.integrators.grid import (
+    DONE,
+    Grid,
+    accelerations,
+    contact_force,
+    end_contact_step,
+    force_in_flight,
+    tip_of,
+)
 from contact.machine.compiled import kernel
 
 
@@ -34,12 +42,13 @@ from contact.machine.compiled import kernel
 def central_difference(grid, memory):
     """Steps from the grid point reached; memory: v_{n+1/2}, shape (n_modes,), and whether damping lags."""
     half, lagged = memory
-    progress, h, q, v, numbers, status = grid.progress[0], grid.step, grid.q, grid.v, grid.numbers, DONE
-    while status == DONE and progress.step < grid.steps:
+    progress, h, q, v, numbers = grid.progress[0], grid.step, grid.q, grid.v, grid.numbers
+    while progress.step < grid.steps:
         for k in range(q.size):
             q[k] += h * half[k]
         sine = math.sin(numbers.drive * (grid.clock + (progress.step + 1) * h))
-        depth, _rate, push = contact_at(numbers, q, half)
+        depth, rate = tip_of(numbers, q, half)
+        push = contact_force(numbers, depth, rate)
         for k in range(q.size):
             old = half[k]
             new = old + h * (force_in_flight(grid, k, sine, q, half) + push_on(numbers, k, push))
@@ -48,7 +57,9 @@ def central_difference(grid, memory):
                 new = (new + c * old) / (1.0 + c)
             half[k], v[k] = new, 0.5 * (old + new)
         status = end_contact_step(grid, None, 1, depth, depth < 0.0, None)
-    return status
+        if status != DONE:
+            return status
+    return DONE
 
 
 @dataclass(frozen=True, kw_only=True)

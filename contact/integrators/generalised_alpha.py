@@ -186,9 +186,9 @@ def generalised_alpha(grid, prepared):
     """Steps from the grid point reached; prepared: the `AlphaState`, and sum phi^2/D [1/kg]."""
     alpha, mobility = prepared
     parameters, a, f, inertia = alpha
-    progress, h, q, v, numbers, status = grid.progress[0], grid.step, grid.q, grid.v, grid.numbers, DONE
+    progress, h, q, v, numbers = grid.progress[0], grid.step, grid.q, grid.v, grid.numbers
     new, b, g = 1.0 - parameters.alpha_f, parameters.beta * h * h, parameters.gamma * h
-    while status == DONE and progress.step < grid.steps:
+    while progress.step < grid.steps:
         sine = math.sin(numbers.drive * (grid.clock + (progress.step + 1) * h))
         predict(grid, alpha, sine)
         depth, rate = tip_of(numbers, q, v)
@@ -201,7 +201,9 @@ def generalised_alpha(grid, prepared):
             f[k] = force_in_flight(grid, k, sine, q, v) + push_on(numbers, k, push)
         depth, _rate = tip_of(numbers, q, v)
         status = end_contact_step(grid, None, 1, depth, depth < 0.0, None)
-    return status
+        if status != DONE:
+            return status
+    return DONE
 
 
 def chung_hulbert(rho: float) -> AlphaParameters:

@@ -92,18 +92,13 @@ def first_tangent(numbers):
     return contact_tangent(numbers, LEAST_DEPTH, 0.0)
 
 
-@inlined
-def contact_at(numbers, q, v):
-    """Penetration d [m], its rate [m/s] and the force N [N] in the modal state (q, q')."""
-    depth, rate = tip_of(numbers, q, v)
-    return depth, rate, contact_force(numbers, depth, rate)
-
-
 @kernel
 def accelerations(grid):
     """The modal accelerations at the first grid point, shape (n_modes,)."""
-    q, v, numbers, found = grid.q, grid.v, grid.numbers, np.empty(grid.q.size)
-    sine, push = math.sin(numbers.drive * grid.clock), contact_at(numbers, q, v)[2]
+    q, v, numbers = grid.q, grid.v, grid.numbers
+    sine = math.sin(numbers.drive * grid.clock)
+    depth, rate = tip_of(numbers, q, v)
+    push, found = contact_force(numbers, depth, rate), np.empty(q.size)
     for k in range(q.size):
         found[k] = force_in_flight(grid, k, sine, q, v) + push_on(numbers, k, push)
     return found
@@ -230,9 +225,9 @@ _write_on_cubic = make_contact_writer(cubic_interpolation)
 @inlined
 def _write_contact(grid, method, span, depth, _report):
     """The trapezoidal rule gives the energy and the impulse that the stop takes."""
-    d0, r0, f0 = contact_at(grid.numbers, grid.q0, grid.v0)
-    _d1, r1, f1 = contact_at(grid.numbers, grid.q, grid.v)
-    half = 0.5 * span[1]
+    d0, r0 = tip_of(grid.numbers, grid.q0, grid.v0)
+    d1, r1 = tip_of(grid.numbers, grid.q, grid.v)
+    f0, f1, half = contact_force(grid.numbers, d0, r0), contact_force(grid.numbers, d1, r1), 0.5 * span[1]
     given = half * (r0 * f0 + r1 * f1), half * (f0 + f1), max(f0, f1)
     _write_on_cubic(grid, method, span, depth, (d0, given, False))
 

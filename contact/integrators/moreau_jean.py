@@ -108,9 +108,9 @@ def through_percussions(grid, prepared):
     """Steps from the grid point reached, with `prepared` by `before_percussions`."""
     alpha, mobility = prepared
     parameters, a, f, inertia = alpha
-    progress, h, q, v, numbers, status = grid.progress[0], grid.step, grid.q, grid.v, grid.numbers, DONE
+    progress, h, q, v, numbers = grid.progress[0], grid.step, grid.q, grid.v, grid.numbers
     modes, new, eta = numbers.modes, 1.0 - parameters.alpha_f, parameters.eta
-    while status == DONE and progress.step < grid.steps:
+    while progress.step < grid.steps:
         sine = math.sin(numbers.drive * (grid.clock + (progress.step + 1) * h))
         depth, before = tip_of(numbers, q, v)
         predict(grid, alpha, sine)
@@ -128,7 +128,9 @@ def through_percussions(grid, prepared):
             f[k] = force_in_flight(grid, k, sine, q, v)
         depth, _rate = tip_of(numbers, q, v)
         status = end_step(grid, 1.0 - eta, 1, depth, push == 0.0, push)
-    return status
+        if status != DONE:
+            return status
+    return DONE
 
 
 @dataclass(frozen=True, kw_only=True)

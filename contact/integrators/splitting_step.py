@@ -30,9 +30,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from contact.flight.modal_flow import apply_flow, flow_over, propagate
+from contact.flight.modal_flow import flow_over, propagate
 from contact.flight.numbers import LOAD, OMEGA
-from contact.flight.tip import push_on, tip_bound, tip_sum
+from contact.flight.tip import at_tip, push_on, tip_bound, tip_sum
 from contact.integrators.grid import DONE, contact_force, contact_tangent, make_contact_writer, make_end_step
 from contact.machine.compiled import inlined, kernel
 
@@ -123,8 +123,11 @@ def take_step(numbers, split, length, tip, u, v, with_force):
         c, s = flow[n, 0], flow[n, 1]
         sine, cosine = c * sine + s * cosine, c * cosine - s * sine
         depth = numbers.level + numbers.tip_sine * sine + numbers.tip_cosine * cosine
-        apply_flow(flow, u, v)
-        depth = tip_sum(numbers, depth, u)
+        for k in range(n):
+            uk, vk = u[k], v[k]
+            u[k] = flow[k, 0] * uk + flow[k, 1] * vk + flow[k, 4]
+            v[k] = flow[k, 2] * uk + flow[k, 3] * vk + flow[k, 5]
+            depth += at_tip(numbers, k, u[k])
     return (depth, sine, cosine), (loss, impulse, largest), touched
 
 
@@ -158,8 +161,8 @@ def clear_steps(numbers, depth, u, v, h):
 def split_steps(grid, split):
     """Steps from the grid point reached, with deviations from the steady motion; `split`: see `take_step`."""
     numbers, progress, h, u, v = grid.numbers, grid.progress[0], grid.step, grid.q, grid.v
-    tip, look, status = tip_at(numbers, u, grid.clock + progress.step * h), progress.step, DONE
-    while status == DONE and progress.step < grid.steps:
+    tip, look = tip_at(numbers, u, grid.clock + progress.step * h), progress.step
+    while progress.step < grid.steps:
         count, before, given, touched = 1, tip[0], (0.0, 0.0, 0.0), False
         if progress.step >= look and before < 0.0 and grid.recorder.marks[0].touching == 0:
             count = int(min(clear_steps(numbers, before, u, v, h), grid.steps - progress.step))
@@ -173,4 +176,6 @@ def split_steps(grid, split):
             tip = tip_at(numbers, u, grid.clock + (progress.step + count) * h)
         no_contact = tip[0] <= 0.0 and not touched
         status = end_split_step(grid, split, count, tip[0], no_contact, (before, given, touched))
-    return status
+        if status != DONE:
+            return status
+    return DONE
