@@ -117,11 +117,8 @@ def collisions(trajectory: Trajectory, *, unfinished: str = "refuse") -> list[Co
         What to do with a last collision that is not final when the trajectory ends.
     """
     trajectory = require_kind("trajectory", trajectory, Trajectory, "a Trajectory, from simulate")
-    numbers, impacts, k = (
-        trajectory.oscillator.numbers(),
-        trajectory.impacts,
-        trajectory.oscillator.model.leading_mode,
-    )
+    oscillator, impacts = trajectory.oscillator, trajectory.impacts
+    numbers, k = oscillator.numbers(), oscillator.model.leading_mode
     single = with_only_mode(numbers, k)
     words = "load drives a higher mode of zero frequency; for a virtual motion it must be zero there"
     require(not np.delete(numbers.row(LOAD), k).any(), words)
@@ -138,10 +135,9 @@ def collisions(trajectory: Trajectory, *, unfinished: str = "refuse") -> list[Co
         if not impacts.end[last] + minimum <= trajectory.end.time:
             if unfinished == "drop" or under_way:
                 break
-            raise InvalidValue(
-                f"trajectory ends at {trajectory.end.time:.6g} s, before the collision that began at "
-                f"{impacts.start[first]:.6g} s is final; run it about one drive period longer"
-            )
+            given = f"{trajectory.end.time:.6g} s, before the collision that began at"
+            words = f"{impacts.start[first]:.6g} s is final; run it about one drive period longer"
+            raise InvalidValue(f"trajectory ends at {given} {words}")
         if not under_way:
             found.append(_measure(numbers, k, impacts, slice(first, last + 1), outgoing))
     return found

@@ -16,12 +16,14 @@ class ContactError(RuntimeError):
     ----------
     time, gap, velocity : float
         Time since the start of the run [s], distance of the tip from the stop, positive when the tip is free
-        [m], and velocity of the tip towards the stop [m/s].
+        [m], and velocity of the tip towards the stop [m/s].  A search for an orbit has none: they are zero.
     """
 
     reason = "the computation could not be finished"
 
-    def __init__(self, *, time: float, gap: float, velocity: float, detail: str = "") -> None:
+    def __init__(
+        self, *, time: float = 0.0, gap: float = 0.0, velocity: float = 0.0, detail: str = ""
+    ) -> None:
         self.time, self.gap, self.velocity = time, gap, velocity
         place = f"at t = {time:.9g} s, {gap:.3g} m from the stop, velocity {velocity:.3g} m/s"
         super().__init__(f"{self.reason} {place}{'; ' + detail if detail else ''}")

@@ -130,10 +130,8 @@ class Impacts:
     @cached_property
     def _steady(self) -> tuple[tuple[np.ndarray, np.ndarray], ...]:
         """Steady displacements and velocities at `start`, and at `end`."""
-        numbers = self.oscillator.stacked()
-        return tuple(
-            steady_motion(numbers, np.fmod(at, numbers.period)) for at in (self.clock, self.end_clock)
-        )
+        numbers, clocks = self.oscillator.stacked(), (self.clock, self.end_clock)
+        return tuple(steady_motion(numbers, np.fmod(at, numbers.period)) for at in clocks)
 
     @cached_property
     def displacement_start(self) -> np.ndarray:

@@ -176,9 +176,8 @@ class LinearContact(ContactLaw):
         """
         elastic = LinearContact(stiffness=stiffness)
         mass = require_within("mass", mass, "kg", above=0)
-        return replace(
-            elastic, damping=2.0 * damping_ratio(restitution) * math.sqrt(elastic.stiffness * mass)
-        )
+        damping = 2.0 * damping_ratio(restitution) * math.sqrt(elastic.stiffness * mass)
+        return replace(elastic, damping=damping)
 
 
 @final
@@ -216,10 +215,8 @@ class HertzContact(ContactLaw):
         for name, value in (("youngs_modulus", youngs_modulus), ("other_modulus", other_modulus)):
             require_within(name, value, "Pa", above=0)
             if not SOFTEST <= value <= HARDEST:
-                suspect(
-                    f"{name} is {value:g} Pa; solids that a ball rebounds from lie between {SOFTEST:g} and "
-                    f"{HARDEST:g} Pa"
-                )
+                known = f"solids that a ball rebounds from lie between {SOFTEST:g} and {HARDEST:g} Pa"
+                suspect(f"{name} is {value:g} Pa; {known}")
         for name, value in (("poissons_ratio", poissons_ratio), ("other_ratio", other_ratio)):
             require_within(name, value, "[1]", above=-1, high=0.5)
         compliance = (1 - poissons_ratio**2) / youngs_modulus + (1 - other_ratio**2) / other_modulus
@@ -257,11 +254,7 @@ class HuntCrossley(ContactLaw):
     dissipation: float
     code: ClassVar[int] = POWER
     units: ClassVar[dict[str, str]] = {"stiffness": "N/m^1.5", "dissipation": "s/m"}
-
-    @property
-    def table(self) -> np.ndarray:
-        """m, m x and m y of ``contact.touch.power``, with x = 3/2 and y = 0."""
-        return np.array([[2.0, 3.0, 0.0]])
+    table = HertzContact.table
 
     @staticmethod
     def with_restitution(*, stiffness: float, restitution: float, velocity: float) -> HuntCrossley:

@@ -30,15 +30,12 @@ def suspect_sizes(model: ModalModel, gap: float, drive: HarmonicDrive | None) ->
         suspect(f"{given}; exciters move by some centimetres at most, and {remedy}")
     if drive is None:
         return
+    given = f"frequency of the drive is {drive.frequency:g}"
     highest, turn = float(model.omega.max()), 2.0 * math.pi
     if 0.0 < HIGHEST_DRIVE * highest < drive.angular_frequency:
-        suspect(
-            f"frequency of the drive is {drive.frequency:g} Hz, far above the highest retained mode at "
-            f"{highest / turn:g} Hz; modes that the drive excites are missing"
-        )
+        above = f"far above the highest retained mode at {highest / turn:g} Hz"
+        suspect(f"{given} Hz, {above}; modes that the drive excites are missing")
     lowest = min((x for x in model.omega.tolist() if x > 0.0), default=0.0)
     if drive.angular_frequency < SLOWEST_DRIVE * lowest:
-        suspect(
-            f"frequency of the drive is {drive.frequency:g} Hz, below {SLOWEST_DRIVE:g} of the lowest mode "
-            f"at {lowest / turn:g} Hz; the spring then follows its base and does not bend"
-        )
+        words = f"at {lowest / turn:g} Hz; the spring then follows its base and does not bend"
+        suspect(f"{given} Hz, below {SLOWEST_DRIVE:g} of the lowest mode {words}")

@@ -1,7 +1,6 @@
 """``simulate``: a motion as a trajectory of named arrays, by a method that fits the contact law.
 
-Without a chosen method the exact one is taken: event-driven for an impact law, piecewise-linear for a linear
-contact, the contact series for Hertz's and Hunt and Crossley's laws.  Its error is that of rounding;
+Without a chosen method the exact one is taken (``contact.integrators``).  Its error is that of rounding;
 ``studies.methods.work_precision`` compares its cost with that of the other methods and of outside solvers.
 """
 

@@ -68,15 +68,6 @@ def raised(given: Any, step: float) -> Any:
 
 
 @kernel
-def hermite(table, row, low, high, h, s):
-    """Value and slope of row `row` at the part `s` of the interval `h` [m/s] between two columns."""
-    a, b = table[row, low], table[row, high]
-    da, db = h * table[row + 1, low], h * table[row + 1, high]
-    square, cube = 3.0 * (b - a) - 2.0 * da - db, 2.0 * (a - b) + da + db
-    return a + s * (da + s * (square + s * cube)), (da + s * (2.0 * square + 3.0 * s * cube)) / h
-
-
-@kernel
 def at_speed(table, row, speed):
     """Value and slope at an approach speed [m/s] of the function whose values are in row `row`."""
     n = table.shape[1]
@@ -87,4 +78,8 @@ def at_speed(table, row, speed):
     high = np.searchsorted(table[0], speed, "right")
     low = high - 1
     h = table[0, high] - table[0, low]
-    return hermite(table, row, low, high, h, (speed - table[0, low]) / h)
+    s = (speed - table[0, low]) / h
+    a, b = table[row, low], table[row, high]
+    da, db = h * table[row + 1, low], h * table[row + 1, high]
+    square, cube = 3.0 * (b - a) - 2.0 * da - db, 2.0 * (a - b) + da + db
+    return a + s * (da + s * (square + s * cube)), (da + s * (2.0 * square + 3.0 * s * cube)) / h

@@ -8,16 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from beam import ModalModel
-from beam.parameters import (
-    InvalidType,
-    InvalidValue,
-    final,
-    require,
-    require_each,
-    require_kind,
-    require_within,
-    shown,
-)
+from beam.parameters import InvalidType, final, require, require_each, require_kind, require_within, shown
 from contact.laws import ContactLaw
 
 PARALLEL = 1e-12  # relative difference within which two stops are met by the same motion
@@ -63,12 +54,11 @@ class Stop:
 
         InvalidValue is raised for a name that the model does not have.
         """
-        names, rows = (self.at,) if isinstance(self.at, str) else self.at, []
+        names, known = (self.at,) if isinstance(self.at, str) else self.at, ", ".join(model.points)
         for name in names:
-            if name not in model.points:
-                known = ", ".join(model.points)
-                raise InvalidValue("at", f"is {shown(name)}; the points of the model are {known}")
-            rows.append(model.points[name].row)
+            words = f"is {shown(name)}; the points of the model are {known}"
+            require(name in model.points, "at", words)
+        rows = [model.points[name].row for name in names]
         return float(self.side) * (rows[0] if len(rows) == 1 else rows[0] - rows[1])
 
 
@@ -95,21 +85,17 @@ def rows_of(stops: tuple[Stop, ...], model: ModalModel) -> list[np.ndarray]:
         size, law = float(np.linalg.norm(row)), type(stop.law).__name__
         require(size > 0.0, "at", f"is {shown(stop.at)}, a point that no mode moves towards the stop")
         if stop.law.one_mode_only and row.size > 1:
-            raise InvalidType(
-                f"law of the stop is {law}, which holds for one mode; the model has {row.size}, so give a "
-                "force law or NewtonRestitution, or truncate the model"
-            )
+            remedy = "so give a force law or NewtonRestitution, or truncate the model"
+            words = f"which holds for one mode; the model has {row.size}, {remedy}"
+            raise InvalidType(f"law of the stop is {law}, {words}")
         unit, way = row / size, stop.gap / size
         for j, (other, reach) in enumerate(zip(units, ways, strict=True)):
-            gaps, limit = (
-                f"is {stops[j].gap} m and {stop.gap} m at stops {j} and {i}",
-                PARALLEL * max(way, reach),
-            )
+            gaps = f"is {stops[j].gap} m and {stop.gap} m at stops {j} and {i}, which"
+            limit = PARALLEL * max(way, reach)
             same = np.linalg.norm(unit - other) <= PARALLEL and abs(way - reach) <= limit
-            require(not same, "gap", f"{gaps}, which lie at one place; one of them must go")
+            require(not same, "gap", f"{gaps} lie at one place; one of them must go")
             closed = np.linalg.norm(unit + other) <= PARALLEL and not way + reach > 0.0
-            require(
-                not closed, "gap", f"{gaps}, which hold the point from both sides; it must have clearance"
-            )
+            words = f"{gaps} hold the point from both sides; it must have clearance"
+            require(not closed, "gap", words)
         units, ways = [*units, unit], [*ways, way]
     return rows

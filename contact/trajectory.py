@@ -34,11 +34,7 @@ class Regime(IntEnum):
     force.  SUSTAINED: held on the wall by the motion.  WAITING: on the wall, until a delayed rebound.
     """
 
-    OUTSIDE = 0
-    CONTACT = 1
-    INSIDE = 2
-    SUSTAINED = 3
-    WAITING = 4
+    OUTSIDE, CONTACT, INSIDE, SUSTAINED, WAITING = range(5)
 
 
 class ImpactKind(IntEnum):
@@ -49,10 +45,7 @@ class ImpactKind(IntEnum):
     begun before the run.
     """
 
-    IMPACT = 0
-    GRAZE = 1
-    STAY = 2
-    UNDER_WAY = 3
+    IMPACT, GRAZE, STAY, UNDER_WAY = range(4)
 
 
 OUTSIDE, CONTACT, INSIDE, SUSTAINED, WAITING = map(int, Regime)
@@ -165,7 +158,7 @@ class Trajectory:
         arrays = {name: getattr(self, name) for name in _ARRAYS}
         arrays |= {f"impacts_{name}": getattr(self.impacts, name) for name in _COLUMNS}
         arrays |= {f"end_{name}": np.asarray(getattr(self.end, name)) for name in _STATE}
-        np.savez_compressed(path, values=_fingerprint(self.oscillator), **arrays)
+        np.savez_compressed(path, numbers=_fingerprint(self.oscillator), **arrays)
 
     @staticmethod
     def load(path: str | Path, oscillator: ImpactOscillator) -> Trajectory:

@@ -42,13 +42,9 @@ def rest_of_hops(run, stop, until, recorder):
     """How far a step up to the clock `until` [s] lies in the hops before a stay at a stop, whose row is open
     [s]."""
     row = recorder.log[recorder.marks[stop].row]
-    if (
-        row.kind != STAY
-        or row.stretch < run.stretch
-        or (row.stretch == run.stretch and row.start <= run.clock)
-    ):
+    if row.kind != STAY or row.stretch < run.stretch:
         return 0.0
-    return until - run.clock if row.stretch > run.stretch else min(row.start, until) - run.clock
+    return max(0.0, (until if row.stretch > run.stretch else min(row.start, until)) - run.clock)
 
 
 def reached(law: SimpleNamespace) -> Callable[..., tuple[float, float]]:
@@ -77,10 +73,8 @@ def reached(law: SimpleNamespace) -> Callable[..., tuple[float, float]]:
         low, high = (-1.0, -1.0) if first < 0.0 else (0.0, length)
         for _ in range(60):
             middle = 0.5 * (low + high)
-            if series_variable(numbers, middle, s, series) < first:
-                low = middle
-            else:
-                high = middle
+            before = series_variable(numbers, middle, s, series) < first
+            low, high = (middle, high) if before else (low, middle)
         return first, high
 
     return kernel(reaches)
@@ -117,6 +111,18 @@ follow = follower(recorded)
 
 
 @part
+def end_period(run, end, last, recorder, u, v):
+    """End a drive period, or at the stretch `last` the run, at the clock `end`; returns the status."""
+    while sample_due(recorder, run.stretch, end):  # samples closer to the end than any step
+        put_sample(recorder, u, v)
+    run.clock = end
+    if run.stretch == last:
+        return DONE
+    strobe(run, recorder.marks[0], recorder.strobes, recorder.counts, u, v)
+    return GOING
+
+
+@part
 def follow_contact(numbers, u, v, run, last, clock_end, space, recorder):
     """Follow a contact to its release or the end of the run; returns the status."""
     status, series = GOING, space.series
@@ -124,8 +130,7 @@ def follow_contact(numbers, u, v, run, last, clock_end, space, recorder):
         order, columns = touch.series_size(numbers)
         series = fitted(series, order, columns)
     while status == GOING:
-        at_last = run.stretch == last
-        end = clock_end if at_last else numbers.period
+        end = clock_end if run.stretch == last else numbers.period
         left = follow(numbers, u, v, run, end, MOST_STEPS, recorder, series, (space, recorder))
         if left == RELEASED:
             return GOING
@@ -133,9 +138,5 @@ def follow_contact(numbers, u, v, run, last, clock_end, space, recorder):
             return FAILED_SECOND
         if left != AT_END:
             return FAILED_STEPS if left == TOO_MANY else FAILED_SERIES
-        while sample_due(recorder, run.stretch, end):  # samples closer to the end than any step
-            put_sample(recorder, u, v)
-        run.clock, status = end, DONE if at_last else GOING
-        if not at_last:
-            strobe(run, recorder.marks[0], recorder.strobes, recorder.counts, u, v)
+        status = end_period(run, end, last, recorder, u, v)
     return status

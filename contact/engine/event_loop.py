@@ -16,31 +16,14 @@ from typing import NamedTuple
 import numpy as np
 
 from contact import touch
-from contact.engine.contacts import (
-    CROSSED,
-    DONE,
-    FAILED_CHATTER,
-    FAILED_CROSSING,
-    FAILED_STEPS,
-    GOING,
-    GRAZED,
-    LOG_FULL,
-    MOST_STEPS,
-    follow_contact,
-)
+from contact.engine import contacts
+from contact.engine.contacts import CROSSED, DONE, FAILED_CHATTER, GOING, GRAZED, LOG_FULL, MOST_STEPS
 from contact.engine.recorder import sample_due, sample_flight, strobe
 from contact.engine.sets import follow_several
 from contact.engine.together import instant, meet_several
+from contact.flight import modal_flow
 from contact.flight.crossing import CROSSES, FREE, UNRESOLVED, searched_flight
-from contact.flight.modal_flow import (
-    LOOK,
-    apply_flow,
-    clear_faint,
-    flow_over,
-    load_state,
-    new_flight,
-    propagate_flight,
-)
+from contact.flight.modal_flow import apply_flow, flow_over, load_state, new_flight, propagate_flight
 from contact.flight.numbers import seen_from, stops_of
 from contact.flight.sampled_crossing import first_sampled_crossing
 from contact.machine.compiled import borrowed, held, kernel, part
@@ -75,15 +58,9 @@ def new_workspace(numbers):
     for j in range(stops_of(numbers)):
         own = touch.series_size(seen_from(numbers, j) if several else numbers)
         order, columns = max(order, own[0]), max(columns, own[1])
-    return Workspace(
-        new_flight(numbers),
-        flow_over(numbers, numbers.period),
-        new_series(order, columns),
-        np.empty(numbers.size),
-        np.empty(numbers.size),
-        numbers.modes,
-        np.empty(order + 1),
-    )
+    flight, whole = new_flight(numbers), flow_over(numbers, numbers.period)
+    series, u, v = new_series(order, columns), np.empty(numbers.size), np.empty(numbers.size)
+    return Workspace(flight, whole, series, u, v, numbers.modes, np.empty(order + 1))
 
 
 @kernel
@@ -127,13 +104,13 @@ def follow_flights(numbers, u, v, run, run_end, space, recorder, samples, sets):
                 sample_flight(numbers, run, until, space, recorder)
             if outcome == FREE and base == 0.0 and not at_last:
                 apply_flow(whole, u, v)
-                if run.stretch % LOOK == 0:
-                    clear_faint(u, v)
+                if run.stretch % modal_flow.LOOK == 0:
+                    modal_flow.clear_faint(u, v)
             else:
                 propagate_flight(numbers, flight, s, u, v)
             run.clock = until
             if outcome == UNRESOLVED:
-                status = FAILED_CROSSING
+                status = contacts.FAILED_CROSSING
             elif outcome != FREE:
                 status = CROSSED if outcome == CROSSES else GRAZED
             run.contact_order = 0
@@ -169,11 +146,11 @@ def advance(numbers, u, v, runs, last, clock_end, recorder, samples, sets=None):
         elif recorder.marks[0].impacts > MOST_IMPACTS:
             status = FAILED_CHATTER
         elif run.steps > MOST_STEPS:
-            status = FAILED_STEPS
+            status = contacts.FAILED_STEPS
         elif run.regime == OUTSIDE:
             status = follow_flights(numbers, u, v, run, (last, clock_end), space, recorder, samples, sets)
         elif sets is None:
-            status = follow_contact(numbers, u, v, run, last, clock_end, space, recorder)
+            status = contacts.follow_contact(numbers, u, v, run, last, clock_end, space, recorder)
         else:
             status = follow_several(numbers, u, v, run, last, clock_end, space, recorder, sets)
         if status == CROSSED or status == GRAZED:

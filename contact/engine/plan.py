@@ -12,7 +12,7 @@ from contact.trajectory import State
 MOST_STORED = 2.0**28  # largest number of values in the strobes of one run: 2 GB
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Plan:
     """What a simulation has to do: its start and end, and the times at which its states are wanted."""
 
@@ -41,10 +41,9 @@ def plan_of(
     whole = 0 if periods is None else require_whole("periods", periods, "drive periods")
     length = whole * period if whole else require_within("duration", duration, "s", above=0)
     if length / period * 2 * oscillator.n_modes > MOST_STORED:
-        raise InvalidValue(
-            f"duration is {length:g} s, {length / period:g} drive periods with {oscillator.n_modes} modes; "
-            f"the strobes kept must stay below {MOST_STORED:g} numbers, so run it in pieces"
-        )
+        given = f"{length:g} s, {length / period:g} drive periods with {oscillator.n_modes} modes"
+        words = f"the strobes kept must stay below {MOST_STORED:g} numbers, so run it in pieces"
+        raise InvalidValue(f"duration is {given}; {words}")
     first, clock = (x.item() for x in split_time(start.time, period))
     last, clock_end = first + whole, clock
     if not whole:
@@ -62,14 +61,4 @@ def plan_of(
     sample_stretch[late], sample_clock[late] = last, clock_end
     early = (sample_stretch < first) | ((sample_stretch == first) & (sample_clock < clock))
     sample_stretch[early], sample_clock[early] = first, clock
-    return Plan(
-        start=start,
-        length=length,
-        first=first,
-        last=last,
-        clock=clock,
-        clock_end=clock_end,
-        times=wanted,
-        sample_stretch=sample_stretch,
-        sample_clock=sample_clock,
-    )
+    return Plan(start, length, first, last, clock, clock_end, wanted, sample_stretch, sample_clock)

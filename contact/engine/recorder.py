@@ -37,16 +37,9 @@ class Recorder(NamedTuple):
 def strobes_only(strobes, counts):
     """A recorder of strobes and counts alone, either of which may be empty."""
     wide = strobes.shape[1]
-    return Recorder(
-        np.zeros(1, dtype=MARKS),
-        np.empty(0, dtype=TOUCH),
-        np.empty((0, 2 * wide)),
-        strobes,
-        counts,
-        np.empty(0, dtype=np.int64),
-        np.empty(0),
-        np.empty((0, wide)),
-    )
+    marks, log, log_state = np.zeros(1, dtype=MARKS), np.empty(0, dtype=TOUCH), np.empty((0, 2 * wide))
+    stretch, clock, samples = np.empty(0, dtype=np.int64), np.empty(0), np.empty((0, wide))
+    return Recorder(marks, log, log_state, strobes, counts, stretch, clock, samples)
 
 
 @part
@@ -92,38 +85,26 @@ def strobe(run, marks, strobes, counts, u, v):
 
 def recorder_for(plan: Plan, n_modes: int, stops: int = 1) -> Recorder:
     """An empty recorder for the strobes and times of `plan`, and a number of stops."""
-    strobes, times = plan.last - plan.first, plan.times.size
-    return Recorder(
-        *new_touches(64, n_modes, stops),  # the log grows by itself
-        strobes=np.empty((strobes, 2 * n_modes)),
-        counts=np.zeros(strobes, dtype=np.int64),
-        sample_stretch=np.asarray(plan.sample_stretch, dtype=np.int64),
-        sample_clock=plan.sample_clock,
-        samples=np.empty((times, 2 * n_modes)),
-    )
+    touches, passed = new_touches(64, n_modes, stops), plan.last - plan.first  # the log grows by itself
+    strobes, counts = np.empty((passed, 2 * n_modes)), np.zeros(passed, dtype=np.int64)
+    samples = np.empty((plan.times.size, 2 * n_modes))
+    return Recorder(*touches, strobes, counts, plan.sample_stretch, plan.sample_clock, samples)
 
 
 def grown(recorder: Recorder) -> Recorder:
     """The recorder with a log twice as long."""
     log, state = recorder.log, recorder.log_state
-    return recorder._replace(
-        log=np.concatenate([log, np.zeros_like(log)]), log_state=np.concatenate([state, np.empty_like(state)])
-    )
+    log, state = np.concatenate([log, np.zeros_like(log)]), np.concatenate([state, np.empty_like(state)])
+    return recorder._replace(log=log, log_state=state)
 
 
 def trajectory_of(
-    recorder: Recorder,
-    plan: Plan,
-    end: State,
-    oscillator: ImpactOscillator,
-    *,
-    evaluations: int,
-    deviations: bool,
+    recorder: Recorder, plan: Plan, end: State, oscillator: ImpactOscillator, count: int, *, deviations: bool
 ) -> Trajectory:
-    """The record as named arrays.
+    """The record as named arrays, with a `count` of evaluations.
 
-    Samples at the end of the run that were not written get the state `end`.  `deviations` tells whether the
-    record holds deviations from the steady motion, or else modal states.
+    Samples at the end of the run that were not written get the state `end`.  With `deviations` the record
+    holds deviations from the steady motion, without it modal states.
     """
     n, marks, period, numbers = oscillator.n_modes, recorder.marks[0], oscillator.period, oscillator.stacked()
     left = slice(int(marks["sampled"]), None)
@@ -169,5 +150,5 @@ def trajectory_of(
         displacement=q[passed:],
         velocity=v[passed:],
         impacts=impacts,
-        evaluations=int(evaluations),
+        evaluations=int(count),
     )

@@ -5,15 +5,9 @@ Each step of the closed contacts (``contact.touch.sets``) ends at the next touch
 """
 
 from contact import touch
-from contact.engine.contacts import (
-    DONE,
-    FAILED_SERIES,
-    FAILED_STEPS,
-    MOST_STEPS,
-    follow_contact,
-    rest_of_hops,
-)
-from contact.engine.recorder import put_sample, sample_due, strobe
+from contact.engine import contacts
+from contact.engine.contacts import GOING, MOST_STEPS, end_period, follow_contact, rest_of_hops
+from contact.engine.recorder import put_sample, sample_due
 from contact.engine.together import instant
 from contact.flight.numbers import seen_from
 from contact.machine.compiled import kernel, part
@@ -51,17 +45,17 @@ def follow_together(numbers, u, v, run, last, clock_end, space, recorder, sets):
     stops, whole = sets.states, space.series
     whole = fitted(whole, time_series.ORDER, numbers.modes.shape[1])
     series = Series(sets.rows, whole.sums, whole.scalars, whole.scaled, whole.places)
-    while True:
-        at_last = run.stretch == last
-        end = clock_end if at_last else numbers.period
+    status = GOING
+    while status == GOING:
+        end = clock_end if run.stretch == last else numbers.period
         while end - run.clock > CLOSEST * numbers.period:
             s = step(numbers, run.clock, stops, u, v, end - run.clock, sets)
             run.evaluations += 1
             run.steps += 1
             if run.steps > MOST_STEPS:
-                return FAILED_STEPS
+                return contacts.FAILED_STEPS
             if not s >= 0.0:
-                return FAILED_SERIES
+                return contacts.FAILED_SERIES
             until = run.clock + s if s < end - run.clock else end
             while sample_due(recorder, run.stretch, until):
                 time = recorder.sample_clock[recorder.marks[0].sampled] - run.clock
@@ -80,12 +74,8 @@ def follow_together(numbers, u, v, run, last, clock_end, space, recorder, sets):
                     stops[j].contact_order = 0
             if happens > 0:
                 return instant(numbers, run, u, v, sets, recorder)
-        while sample_due(recorder, run.stretch, end):  # samples closer to the end than any step
-            put_sample(recorder, u, v)
-        run.clock = end
-        if at_last:
-            return DONE
-        strobe(run, recorder.marks[0], recorder.strobes, recorder.counts, u, v)
+        status = end_period(run, end, last, recorder, u, v)
+    return status
 
 
 @part

@@ -90,16 +90,12 @@ def start_of(
         words = f"with this contact law it must be one of {known}"
         raise InvalidValue(f"regime of the state is {regime}; {words}")
     if regime != OUTSIDE and (height < -near or (height > near and regime in (SUSTAINED, WAITING))):
-        raise InvalidValue(
-            f"regime of the state is {regime}, but the tip is {height:.3g} m past the stop; it must be at "
-            "the gap, in contact at the gap or beyond"
-        )
+        words = "past the stop; it must be at the gap, in contact at the gap or beyond"
+        raise InvalidValue(f"regime of the state is {regime}, but the tip is {height:.3g} m {words}")
     if regime == OUTSIDE and height > rounding:
         if Regime.CONTACT not in known:
-            raise InvalidValue(
-                f"displacement of the state puts the tip {height:.3g} m behind the stop; with an impact law "
-                "it must start on the near side"
-            )
+            words = "behind the stop; with an impact law it must start on the near side"
+            raise InvalidValue(f"displacement of the state puts the tip {height:.3g} m {words}")
         pushes = INSIDE not in known or force(numbers, height, velocity) > 0.0
         regime = Regime.CONTACT if pushes else INSIDE
     runs[0] = (regime, 0, state.stop, stretch, 0, 0, clock, state.wait, state.rebound, -1.0, -1.0)
@@ -124,10 +120,8 @@ def start_of_several(
     views, regimes = views_of(numbers), state.regimes
     words = f"it must be the number of one of {len(views)} stops, from 0 on"
     require(state.stop < len(views), f"stop of the state is {state.stop} [1]; {words}")
-    found = [
-        start_of(seen, replace(state, regime=regimes.get(j, OUTSIDE), stop=j), stretch, clock)
-        for j, seen in enumerate(views)
-    ]
+    starts = [replace(state, regime=regimes.get(j, OUTSIDE), stop=j) for j in range(len(views))]
+    found = [start_of(seen, own, stretch, clock) for seen, own in zip(views, starts, strict=True)]
     u, v, stops = *found[0][:2], np.concatenate([runs for _u, _v, runs in found])
     acting = np.flatnonzero(stops["regime"] != OUTSIDE)
     run = stops[acting[:1]] if acting.size else stops[:1].copy()
@@ -140,14 +134,12 @@ def start_of_several(
 
 def state_of(numbers: Numbers, runs: np.ndarray, displacement: np.ndarray, velocity: np.ndarray) -> State:
     """The state of a run as a `State`, given its modal displacement and velocity."""
-    run = runs[0]
+    run, regimes = runs[0], runs["regime"][1:]
     return State(
         displacement=displacement,
         velocity=velocity,
         time=int(run["stretch"]) * numbers.period + run["clock"],
-        regime=tuple(runs["regime"][1:].tolist())
-        if np.sum(runs["regime"][1:] > 0) > 1
-        else int(run["regime"]),
+        regime=tuple(regimes.tolist()) if np.sum(regimes > 0) > 1 else int(run["regime"]),
         wait=float(run["wait"]),
         rebound=float(run["rebound"]),
         stop=int(run["stop"]) if run["regime"] != OUTSIDE else 0,
@@ -157,10 +149,10 @@ def state_of(numbers: Numbers, runs: np.ndarray, displacement: np.ndarray, veloc
 def failure(status: int, numbers: Numbers, runs: np.ndarray, u: np.ndarray, v: np.ndarray) -> ContactError:
     """The error for a failure status of `advance`."""
     clock, stop = float(runs[0]["clock"]), int(runs[0]["stop"])
-    height, velocity, _acceleration = tip_state(views_of(numbers)[stop], clock, u, v)
-    error, detail = FAILURES[status]
+    views, (error, detail) = views_of(numbers), FAILURES[status]
+    height, velocity, _acceleration = tip_state(views[stop], clock, u, v)
     if error is TouchedAtOnce:
-        views, near = views_of(numbers), HELD_WITHIN * tip_rounding(views_of(numbers)[stop], u, v)
+        near = HELD_WITHIN * tip_rounding(views[stop], u, v)
         met = [str(j) for j, one in enumerate(views) if tip_state(one, clock, u, v)[0] >= -near]
         detail = f"these are stops {' and '.join(met)}"
     time = int(runs[0]["stretch"]) * numbers.period + clock
@@ -194,5 +186,4 @@ def exact_trajectory(oscillator: ImpactOscillator, plan: Plan, samples: Samples 
         raise failure(status, numbers, runs, u, v)
     q, q_rate = steady_motion(numbers, plan.clock_end)
     end = state_of(numbers, runs, u + q, v + q_rate)
-    evaluations = int(runs[0]["evaluations"])
-    return trajectory_of(recorder, plan, end, oscillator, evaluations=evaluations, deviations=True)
+    return trajectory_of(recorder, plan, end, oscillator, runs[0]["evaluations"], deviations=True)

@@ -50,11 +50,8 @@ def meet_ties(numbers, run, stops, u, v, sets):
             for i in range(stops.size):
                 height, faster, _pull = tip_state(seen_from(numbers, i), run.clock, u, v)
                 late = -height / max(faster, rate)
-                if (
-                    stops[i].regime == OUTSIDE
-                    and faster > rate > 0.0
-                    and late * rate <= tip_rounding(slow, u, v)
-                ):
+                follows = stops[i].regime == OUTSIDE and faster > rate > 0.0
+                if follows and late * rate <= tip_rounding(slow, u, v):
                     later = max(later, late)
     if later > 0.0:
         for k in range(u.size):
@@ -126,13 +123,11 @@ def change_contacts(numbers, run, u, v, sets, recorder):
             if not rate > 0.0 and sets.event[j] == CHANGES:
                 own.contact_order = 1  # an impulse at this instant has turned it round
             elif rate > 0.0 and (near or sets.event[j] == CHANGES):
-                for i in range(stops.size):
-                    if stops[i].regime != OUTSIDE and not (
-                        touch.joins(seen) and touch.joins(seen_from(numbers, i))
-                    ):
-                        run.stop = j
-                        return FAILED_SECOND
                 run.stop = j
+                for i in range(stops.size):
+                    joined = touch.joins(seen) and touch.joins(seen_from(numbers, i))
+                    if stops[i].regime != OUTSIDE and not joined:
+                        return FAILED_SECOND
                 begin(seen, run, u, v, recorder)
                 own.regime, own.contact_order = run.regime, 0
         elif touch.joins(seen):
@@ -162,9 +157,8 @@ def end_of_hops(numbers, run, u, v, sets):
         if sets.event[j] == HOPS:
             speed = -rates[j]
             lowest = 1e3 * tip_rounding(seen, u, v) * pull / max(1.0 - seen.number0, EPS)
-            if (closed or 0.5 * speed * speed <= lowest) and hops_end(
-                numbers, run, stops, j, speed, u, v, sets
-            ):
+            low_enough = closed or 0.5 * speed * speed <= lowest
+            if low_enough and hops_end(numbers, run, stops, j, speed, u, v, sets):
                 sets.event[j], low = STAYS, True
     for j in range(stops.size):
         if sets.event[j] == STAYS:
@@ -191,9 +185,8 @@ def begin_stays(numbers, run, speeds, u, v, sets, recorder):
             begins = whole * (1.0 - rate * whole)
             begins = begins if whole <= numbers.period and abs(rate * whole) < STEADY_PULL else 0.0
             late = int((run.clock + begins) / numbers.period)
-            open_touch(
-                recorder, j, run.stretch + late, run.clock + begins - late * numbers.period, 0.0, STAY, u, v
-            )
+            clock = run.clock + begins - late * numbers.period
+            open_touch(recorder, j, run.stretch + late, clock, 0.0, STAY, u, v)
         if stops[j].regime == SUSTAINED:
             add_exchange(recorder, j, 0.5 * hops[j] * given[j], given[j], math.nan)
 

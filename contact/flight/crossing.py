@@ -1,15 +1,10 @@
 """The first crossing of the stop, certified.
 
-A signal y(s) (tip displacement minus gap, or a contact force) is known in closed form with its first two
-derivatives, and a bound M of its third.  Starting where y < 0, time is skipped only if a bound proves the
-stretch free:
-
-    y(s + h) <= max over [0, h] of (y + y' h + y'' h^2/2) + M h^3/6 + R < -margin
-
-``contact.flight.bounds`` has this proof and the two that end a search: one root, one peak.  R is the sum of
-amplitudes of the high modes that are bounded instead of sampled.  More modes are sampled as the gap closes;
-``contact.flight.modal_flow`` has the bounds of single modes.  Often a bound of the lowest mode alone proves a
-whole flight free, or the time up to just before a touch, or the rest of a period after one.
+Starting where the tip is off the stop, time is skipped only if a bound proves the stretch free.
+``contact.flight.bounds`` has this proof and the two that end a search: one root, one peak.  High modes are
+bounded instead of sampled (``contact.flight.tip``), and more are sampled as the gap closes.  Often a bound of
+the lowest mode alone proves a whole flight free, or the time up to just before a touch, or the rest of a
+period after one.
 
 A graze, |peak| within the rounding bound of y (at most 1e-13 of the gap), is an outcome of its own.  A
 stretch that no proof settles, with h down to rounding, is reported as unresolved and never passed.
@@ -226,10 +221,8 @@ def searched_flight(numbers, flight, base, duration, contact_order):
     if base < half < base + duration and abs(peak - half) > 0.5 * half * (1.0 + 1e-12):
         end = half - base
     while True:
-        span, off = (first, end), contact_order == 0 or first > 0.0
-        outcome, s = searched_span(
-            numbers, flight, base, span, 0 if off else contact_order, peak, must, margin
-        )
+        span, order = (first, end), 0 if first > 0.0 else contact_order
+        outcome, s = searched_span(numbers, flight, base, span, order, peak, must, margin)
         if outcome == CROSSES and contact_order == 1 and s * numbers.fastest < HOP:
             s = end_of_hop(numbers, flight, base, s)
         if outcome != FREE or s >= duration:

@@ -127,9 +127,8 @@ def flow(numbers, flight, start, stop, t):
         ringing_flow(numbers.modes, flight, start, stop, t)
     else:
         for k in range(start, stop):
-            flight[U, k], flight[V, k] = mode_flow(
-                numbers.modes, k, flight[START_U, k], flight[START_V, k], t
-            )
+            u, v = flight[START_U, k], flight[START_V, k]
+            flight[U, k], flight[V, k] = mode_flow(numbers.modes, k, u, v, t)
 
 
 @kernel

@@ -181,26 +181,11 @@ def _seen_from(numbers, j):
     top = STACKED * j
     own, code = numbers.modes[top + NUMBERS], numbers.modes[top + NUMBERS + 1]
     first, rows, columns = int(code[3]), int(code[4]), int(code[5])
-    return Numbers(
-        numbers.modes[top : top + NUMBERS],
-        own[1],
-        own[2],
-        own[3],
-        numbers.steady_energy,
-        numbers.size,
-        own[0],
-        numbers.drive,
-        numbers.period,
-        own[4],
-        own[5],
-        int(code[0]),
-        code[1],
-        code[2],
-        numbers.all_underdamped,
-        numbers.phase_rate,
-        numbers.fastest,
-        numbers.table[0][first : first + rows * columns].reshape(rows, columns),
-    )
+    modes, steady = numbers.modes[top : top + NUMBERS], (own[1], own[2], own[3])
+    law = int(code[0]), code[1], code[2]
+    table = numbers.table[0][first : first + rows * columns].reshape(rows, columns)
+    shared, drive, speeds = numbers[4:6], numbers[7:9], numbers[14:17]  # the same for every stop
+    return Numbers(modes, *steady, *shared, own[0], *drive, own[4], own[5], *law, *speeds, table)
 
 
 seen_from = inlined(_seen_from)
@@ -219,12 +204,9 @@ def with_drive(numbers, factor):
     for k in range(numbers.size):
         modes[SINE, k] *= factor
         modes[COSINE, k] *= factor
-    sine, cosine, size = (
-        numbers.tip_sine * factor,
-        numbers.tip_cosine * factor,
-        numbers.amplitude * abs(factor),
-    )
-    return Numbers(modes, sine, cosine, size, numbers.steady_energy * factor * factor, *numbers[5:])
+    sine, cosine = numbers.tip_sine * factor, numbers.tip_cosine * factor
+    amplitude, energy = numbers.amplitude * abs(factor), numbers.steady_energy * factor * factor
+    return Numbers(modes, sine, cosine, amplitude, energy, *numbers[5:])
 
 
 @kernel

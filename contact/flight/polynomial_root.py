@@ -30,14 +30,11 @@ def first_polynomial_root(coefficients, sign, end, margin):
     continuous contact force that only touches zero has no consequence.  A step without a proof is at least
     twice the one before, so that the search also ends for a polynomial that is zero or NaN.
     """
-    m3 = 0.0
-    power = 1.0
+    m3, power = 0.0, 1.0
     for j in range(3, coefficients.size):
         m3 += j * (j - 1.0) * (j - 2.0) * abs(coefficients[j]) * power
         power *= end
-    s = 0.0
-    h = end
-    h_min = 4.0 * EPS * end
+    s, h, h_min = 0.0, end, 4.0 * EPS * end
     least = h_min
     while s < end:
         y0, y1, y2 = horner(coefficients, sign, 0.0, s)
@@ -52,18 +49,15 @@ def first_polynomial_root(coefficients, sign, end, margin):
         proof, step = certify(y0, y1, y2, m3, 0.0, margin, min(h, end - s), h_min)
         if proof == SKIP:
             s += step
-            h = 2.0 * step
-            least = h_min
+            h, least = 2.0 * step, h_min
         elif proof == ROOT or (proof == PEAK and horner(coefficients, sign, 0.0, s + step)[0] > 0.0):
             return polynomial_root(coefficients, sign, 0.0, s, s + step)
         elif proof == PEAK:
             low, high = s, s + step
             for _ in range(60):
                 middle = 0.5 * (low + high)
-                if horner(coefficients, sign, 0.0, middle)[1] > 0.0:
-                    low = middle
-                else:
-                    high = middle
+                rises = horner(coefficients, sign, 0.0, middle)[1] > 0.0
+                low, high = (middle, high) if rises else (low, middle)
             if horner(coefficients, sign, 0.0, low)[0] > margin:
                 return polynomial_root(coefficients, sign, 0.0, s, low)
             s += step
@@ -99,10 +93,7 @@ def polynomial_root(coefficients, sign, height, low, high):
         y0, y1, _unused = horner(coefficients, sign, height, s)
         if y0 == 0.0:
             return s
-        if y0 < 0.0:
-            low = s
-        else:
-            high = s
+        low, high = (s, high) if y0 < 0.0 else (low, s)
         new = s - y0 / y1 if y1 > 0.0 else 0.5 * (low + high)
         if not (low < new < high):
             new = 0.5 * (low + high)

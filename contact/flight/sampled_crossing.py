@@ -55,9 +55,7 @@ def first_sampled_crossing(numbers, flight, base, duration, contact_order, sampl
     height, rate, _acceleration = tip_state(numbers, base, u, v)
     if contact_order == 0 and height >= -margin and rate > 0.0:
         return CROSSES, 0.0, count
-    su, sv = u.copy(), v.copy()
-    j = int(base / spacing)
-    s = 0.0
+    su, sv, s, j = u.copy(), v.copy(), 0.0, int(base / spacing)
     while s < duration:
         j += 1
         until = min(j * spacing - base, duration)
@@ -73,8 +71,7 @@ def first_sampled_crossing(numbers, flight, base, duration, contact_order, sampl
             return CROSSES, root_between(numbers, flight, base, s, until, margin), count
         if rate > 0.0 and new_rate < 0.0:
             middle = 0.5 * (s + until)
-            y0, y1, y2 = tip_now(numbers, flight, base, middle)
-            point = (middle, y0, y1, y2)
+            point = (middle, *tip_now(numbers, flight, base, middle))
             peak = find_peak(numbers, flight, base, point, (s, until), math.inf, margin)
             count += 1
             if tip_now(numbers, flight, base, peak)[0] > margin:

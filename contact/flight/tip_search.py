@@ -46,10 +46,7 @@ def find_root(numbers, flight, base, point, bracket, m3, margin):
     for _ in range(200):
         if abs(y0) <= 0.05 * margin:
             return s
-        if y0 < 0.0:
-            low = s
-        else:
-            high = s
+        low, high = (s, high) if y0 < 0.0 else (low, s)
         square = y1 * y1 - 2.0 * y0 * y2
         new = low
         if y1 > 0.0 and square > 0.0:
@@ -70,8 +67,8 @@ def find_root(numbers, flight, base, point, bracket, m3, margin):
 def root_between(numbers, flight, base, low, high, margin):
     """The root of the tip displacement in [low, high] [s]."""
     middle = 0.5 * (low + high)
-    y0, y1, y2 = tip_now(numbers, flight, base, middle)
-    return find_root(numbers, flight, base, (middle, y0, y1, y2), (low, high), math.inf, margin)
+    point = (middle, *tip_now(numbers, flight, base, middle))
+    return find_root(numbers, flight, base, point, (low, high), math.inf, margin)
 
 
 @kernel
@@ -82,10 +79,7 @@ def find_peak(numbers, flight, base, point, bracket, m3, margin):
     for _ in range(200):
         if y1 == 0.0:
             return s
-        if y1 > 0.0:
-            low = s
-        else:
-            high = s
+        low, high = (s, high) if y1 > 0.0 else (low, s)
         new = s - y1 / y2 if y2 < 0.0 else 0.5 * (low + high)
         if not (low < new < high):
             new = 0.5 * (low + high)

@@ -18,7 +18,7 @@ How to add a method with a time step
        (`critical_stiffness`) and its loop over the steps (`time_loop`).  The loop ends each step with
        ``grid.end_contact_step``, which finds touches and releases on a cubic and writes them down.
        ``central_difference`` is the shortest example.  A method with an interpolation of its own, or with
-       percussions, gets another end of the step from ``grid.make_end_of_step``.
+       percussions, gets another end of the step from ``grid.make_end_step``.
     2. Its class in `STEPPED` below.
     3. A test of its order.  ``tests/contact/test_integrators.py`` holds every method of the table to the
        common contract.

@@ -1,20 +1,16 @@
 """Exact motion under any contact law, event by event; touches are proved, or looked for by sampling.
 
-Between touches every mode has a closed form (``contact.flight``).  An impact law acts at once; accumulating
-impacts are summed to the end and followed by the stay on the stop (event-driven).  A force law is followed
-through the contact by a power series to rounding (``contact.touch``): in time where the force is linear
-(piecewise-linear), else in a variable in which it is smooth (contact series).  Nothing is discretised: the
-error is that of rounding, and no step can be too large.  Flights are those of the letter (1996), note [11],
-a linear stop is that of S. W. Shaw, P. J. Holmes, J. Sound Vib. 90 (1983) 129; the series are the package's
-own.  The two methods of this file differ only in the search for the next touch.
+Between touches every mode has a closed form (``contact.flight``), as in the letter (1996), note [11].  An
+impact law acts at once; a force law is followed through the contact by a power series (``contact.touch``).
+Nothing is discretised: the error is that of rounding, and no step can be too large.  The two methods of this
+file differ only in the search for the next touch.
 
 `Exact` proves that it misses none, by a search of the package (``contact.flight.crossing``).
 
-`SampledFlight` is the scheme of the letter: "An efficient numerical scheme for solving Eq. (1) in the
-presence of grazing impacts uses the analytical solutions for the motion between impacts" (note [11]).  It
-takes positions at k instants of each drive period, and at the turning points that their velocities betray.
-``contact.flight.sampled_crossing`` says which touches it misses.  One mode needs few samples.  With N modes k
-has to follow the ringing of the highest, and nothing shows that it was too small.
+`SampledFlight` is the scheme of that note: "An efficient numerical scheme for solving Eq. (1) in the presence
+of grazing impacts uses the analytical solutions for the motion between impacts".  It samples the tip at k
+instants of each drive period (``contact.flight.sampled_crossing``).  One mode needs few samples.  With N
+modes k has to follow the ringing of the highest, and nothing shows that it was too small.
 """
 
 import math

@@ -35,10 +35,8 @@ def _refuse(numbers: Numbers, plan: Plan, step: float, critical: float, where: d
     """ValueError for a start behind the stop, StepTooLarge for a step that cannot be stable."""
     within = step * numbers.most_at_tip(plan.start.velocity) + 1e-12 * max(numbers.gap, 1e-6)
     if numbers.law not in FORCE_LAWS and -where["gap"] > within:
-        raise InvalidValue(
-            f"displacement of the state puts the tip {-where['gap']:.3g} m behind the stop; with an impact "
-            "law it must start on the near side"
-        )
+        behind = f"{-where['gap']:.3g} m behind the stop; with an impact law it must start on the near side"
+        raise InvalidValue(f"displacement of the state puts the tip {behind}")
     stiff, _damping = first_tangent(numbers)
     if critical <= 0.0 or stiff > critical:
         bears = f"it bears a contact of {critical:.4g} N/m, and the first touch has {stiff:.4g} N/m"
@@ -121,11 +119,8 @@ class FixedStep(Integrator):
             return np.array(steady_motion(numbers, clock)) if self.deviations else np.zeros((2, n))
 
         def where(time: float, q: np.ndarray, v: np.ndarray) -> dict[str, float]:
-            return {
-                "time": time,
-                "gap": numbers.gap - float(numbers.tip(q)),
-                "velocity": float(numbers.tip(v)),
-            }
+            depth, rate = float(numbers.tip(q)), float(numbers.tip(v))
+            return {"time": time, "gap": numbers.gap - depth, "velocity": rate}
 
         here = where(start.time, start.displacement, start.velocity)
         critical = math.inf if self.beyond_limit else float(self.critical_stiffness(numbers))
@@ -138,24 +133,11 @@ class FixedStep(Integrator):
         progress = np.zeros(1, dtype=PROGRESS)
         progress["due"] = -math.inf  # the first step has to look for samples
         base = 0.0 if oscillator.drive is None else oscillator.drive.amplitude * numbers.drive**2
-        grid = Grid(
-            progress=progress,
-            numbers=numbers,
-            push=oscillator.model.participation * base,
-            constant=np.zeros(n) if oscillator.load is None else np.array(oscillator.load),
-            step=step,
-            clock=plan.clock,
-            first=plan.first,
-            steps=math.ceil(plan.length / step - 1e-9),
-            critical=critical,
-            q=q,
-            v=v,
-            q0=q.copy(),
-            v0=v.copy(),
-            q_at=q.copy(),
-            v_at=v.copy(),
-            recorder=recorder,
-        )
+        load = np.zeros(n) if oscillator.load is None else np.array(oscillator.load)
+        forces = oscillator.model.participation * base, load
+        clock, first, steps = plan.clock, plan.first, math.ceil(plan.length / step - 1e-9)
+        states = q, v, q.copy(), v.copy(), q.copy(), v.copy()
+        grid = Grid(progress, numbers, *forces, step, clock, first, steps, critical, *states, recorder)
         prepared = self.prepare(grid)
         while (status := self.time_loop(grid, prepared)) == FULL:
             grid = grid._replace(recorder=grown(grid.recorder))
@@ -169,6 +151,4 @@ class FixedStep(Integrator):
         regime, time = CONTACT if touching else OUTSIDE, plan.last * period + plan.clock_end
         end = State(displacement=q, velocity=v, time=time, regime=regime)
         recorder = _separated(recorder, plan, order, period, under_way)
-        return trajectory_of(
-            recorder, plan, end, oscillator, evaluations=grid.steps, deviations=self.deviations
-        )
+        return trajectory_of(recorder, plan, end, oscillator, grid.steps, deviations=self.deviations)

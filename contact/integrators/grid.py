@@ -114,7 +114,7 @@ WriteContact = Callable[..., None]
 penetration at the end of the step, and `report` the method's own account of the contact in it."""
 
 
-def make_end_of_step(interpolate: Interpolate, write: WriteContact) -> Callable[..., int]:
+def make_end_step(interpolate: Interpolate, write: WriteContact) -> Callable[..., int]:
     """The compiled end of a step, for a method's interpolation and its way to write contacts down.
 
     It is end_step(grid, method, count, depth, no_contact, report) -> status.
@@ -232,4 +232,4 @@ def _write_contact(grid, method, span, depth, _report):
     _write_on_cubic(grid, method, span, depth, (d0, given, False))
 
 
-end_contact_step = make_end_of_step(cubic_interpolation, _write_contact)
+end_contact_step = make_end_step(cubic_interpolation, _write_contact)

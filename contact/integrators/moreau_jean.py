@@ -50,14 +50,7 @@ from contact.flight.numbers import DECAY, SQUARE, Numbers
 from contact.flight.tip import push_on
 from contact.integrators.fixed_step import FixedStep
 from contact.integrators.generalised_alpha import AlphaParameters, AlphaState, alpha_state, predict, stable
-from contact.integrators.grid import (
-    DONE,
-    Grid,
-    cubic_interpolation,
-    force_in_flight,
-    make_end_of_step,
-    tip_of,
-)
+from contact.integrators.grid import DONE, Grid, cubic_interpolation, force_in_flight, make_end_step, tip_of
 from contact.laws import NEWTON
 from contact.machine.compiled import inlined, kernel
 from contact.touch.newton import restitution_at
@@ -99,7 +92,7 @@ def write_percussion(grid, corner, span, _depth, push):
         marks.touching = 1
 
 
-end_step = make_end_of_step(path_with_corner, write_percussion)
+end_step = make_end_step(path_with_corner, write_percussion)
 
 
 def before_percussions(parameters: AlphaParameters, grid: Grid) -> tuple[AlphaState, float]:

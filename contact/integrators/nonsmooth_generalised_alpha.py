@@ -1,18 +1,16 @@
 """The nonsmooth generalised-alpha method: smooth motion of order 2, impacts as percussions within a step.
 
 The velocity is split into a smooth part, followed by the generalised-alpha method (``generalised_alpha``),
-and the jump w of the step.  With f = g + P sin(w t) - c v - omega^2 q, U = phi . v, percussion p [N s] and
-Newton's restitution e,
+and the jump w = -phi p of the step.  The force f, the tip velocity U, the restitution e and the conditions on
+the percussion p are as in ``moreau_jean``:
 
     (1 - alpha_m) a_{n+1} + alpha_m a_n = (1 - alpha_f) f_{n+1} + alpha_f f_n
-    v_{n+1} = v_n + h ((1 - gamma) a_n + gamma a_{n+1}) + w,                     w = -phi p
+    v_{n+1} = v_n + h ((1 - gamma) a_n + gamma a_{n+1}) + w
     q_{n+1} = q_n + h v_n + h^2 ((1/2 - beta) a_n + beta a_{n+1}) + (h/2) w
-    0 <= p  and  U_{n+1} + e U_n <= 0,  one of them zero,  if  d_n + (h/2) U_n >= 0;   p = 0 otherwise
 
 (Q.-Z. Chen, V. Acary, G. Virlez, O. Bruls, Int. J. Numer. Meth. Engng 96 (2013) 487; the variant with the
-constraint at velocity level, the whole contact force in the percussion, the constraint switched on by the
-position predicted at mid-step as in ``moreau_jean``).  The acceleration a is the smooth one and is carried
-across impacts.  With D as in ``generalised_alpha``, v_{n+1} = v* - E phi p,
+constraint at velocity level and the whole contact force in the percussion).  The acceleration a is the smooth
+one and is carried across impacts.  With D as in ``generalised_alpha``, v_{n+1} = v* - E phi p,
 
     E = 1 - (1 - alpha_f) gamma h (c + h omega^2/2) / D
       = (1 - alpha_m + (1 - alpha_f) (beta - gamma/2) h^2 omega^2) / D > 0,

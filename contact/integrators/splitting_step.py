@@ -33,13 +33,7 @@ import numpy as np
 from contact.flight.modal_flow import flow_over, propagate
 from contact.flight.numbers import LOAD, OMEGA
 from contact.flight.tip import at_tip, push_on, tip_bound, tip_sum
-from contact.integrators.grid import (
-    DONE,
-    contact_force,
-    contact_tangent,
-    make_contact_writer,
-    make_end_of_step,
-)
+from contact.integrators.grid import DONE, contact_force, contact_tangent, make_contact_writer, make_end_step
 from contact.machine.compiled import inlined, kernel
 
 RENEW = 32
@@ -149,7 +143,7 @@ def shorter_step(grid, split, x, h, with_force):
     return depth, tip_rate(numbers, v, sine, cosine)
 
 
-end_split_step = make_end_of_step(shorter_step, make_contact_writer(shorter_step))
+end_split_step = make_end_step(shorter_step, make_contact_writer(shorter_step))
 
 
 @kernel

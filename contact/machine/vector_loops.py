@@ -72,9 +72,8 @@ def weighted_rows(_context, weights, top, step, rows, count, out):
         kinds = signature.args
         weight, row, result = (_Rows(context, builder, kinds[i], args[i]) for i in (0, 3, 5))
         top, step, count = args[1], args[2], args[4]
-        one, zero = ir.Constant(top.type, 1), ir.Constant(_EIGHT, [0.0] * LANES)
-        kind = top.type
-        lanes = ir.Constant(kind, LANES)
+        kind, zero = top.type, ir.Constant(_EIGHT, [0.0] * LANES)
+        one, lanes = ir.Constant(kind, 1), ir.Constant(kind, LANES)
 
         def sums(column: ir.Value, blocks: int) -> None:
             """`blocks` times eight columns from `column` on."""

@@ -146,7 +146,7 @@ class NonlinearMode:
         half = 0.5 * np.trace(self.monodromy) / math.sqrt(np.linalg.det(self.monodromy))
         if not abs(half) < 1.0:
             detail = f"deviations from the motion that grazes at {self.frequency:g} Hz do not turn"
-            raise NotPeriodic(time=self.grazing[1], gap=0.0, velocity=0.0, detail=detail)
+            raise NotPeriodic(time=self.grazing[1], detail=detail)
         theta = math.copysign(math.acos(half), math.cos(self.numbers[4] * self.grazing[1]))
         return 1.0 / (self.frequency * (1.0 + theta / (2.0 * math.pi)))
 

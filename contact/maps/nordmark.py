@@ -190,10 +190,8 @@ class NordmarkMap:
         It follows from the fields alone. Raises ValueError if gamma = 0 or alpha <= -2 sqrt(gamma).
         """
         root = math.sqrt(self.gamma)
-        require(
-            self.gamma > 0.0 and self.alpha > -2.0 * root,
-            f"alpha is {self.alpha}, gamma {self.gamma}; alpha > -2 sqrt(gamma) and gamma > 0 must hold",
-        )
+        words = f"alpha is {self.alpha}, gamma {self.gamma}; alpha > -2 sqrt(gamma) and gamma > 0 must hold"
+        require(self.gamma > 0.0 and self.alpha > -2.0 * root, words)
         if 4.0 * self.gamma > self.alpha**2:
             ratio = math.sin(self.angle) / (2.0 * math.pi * self.whole_turns + self.angle)
         else:

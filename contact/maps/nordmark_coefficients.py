@@ -41,10 +41,7 @@ def coefficients(
     n11, n12, _, n22 = flow_matrix(omega, decay_rate, damped, damped_low, 1.0 / drive_frequency)
     turns = damped / (2.0 * math.pi * drive_frequency) if omega > 0.5 * decay_rate else 0.0
     own = damped / (2.0 * math.pi)
-    require(
-        n12 > 0.0,
-        f"drive_frequency is {drive_frequency} Hz; the map has p_m only below resonance, here from "
-        f"{own / 1.5:.6g} to {own:.6g} Hz",
-    )
+    words = f"the map has p_m only below resonance, here from {own / 1.5:.6g} to {own:.6g} Hz"
+    require(n12 > 0.0, f"drive_frequency is {drive_frequency} Hz; {words}")
     delay_term = delay / (2.0 * n12 * (1.0 + restitution) ** 2)
     return n11 + n22, math.exp(-decay_rate / drive_frequency), delay_term, math.floor(turns)

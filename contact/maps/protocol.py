@@ -1,9 +1,8 @@
 """Drive periods as a map: the methods of every strobed or iterated system.
 
 Sampling a driven oscillator at the strobe times t_n = n/f turns its motion into the iteration of a map.  Its
-periodic orbits are the p_m orbits of the letter (1996, Fig. 2).  ``StroboscopicMap`` is the map of any impact
-oscillator, ``NordmarkMap`` is the letter's Eqs. (2), (3), ``NonlinearMode`` one mode at finite amplitude.
-Scans and searches for orbits take these, and any other class with the methods of `StrobedMap`.
+periodic orbits are the p_m orbits of the letter (1996, Fig. 2).  Scans and searches for orbits take the maps
+of ``contact.maps``, and any other class with the methods of `StrobedMap`.
 """
 
 from __future__ import annotations

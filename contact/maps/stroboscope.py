@@ -134,7 +134,7 @@ class StroboscopicMap:
                 strobes = strobes[: len(strobes) if more == 0 else 1]
                 break
         else:
-            raise UnresolvedCrossing(time=state.time, gap=0.0, velocity=0.0)
+            raise UnresolvedCrossing(time=state.time)
         found, first = [], 0
         for last in strobes:
             replay.tangent = np.eye(2 * n + 2)

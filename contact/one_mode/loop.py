@@ -1,16 +1,11 @@
 """Drive periods of one mode under Newton's law: most of them cost one multiplication and one proof.
 
-Eq. (1) of the letter (1996) in the notation of ``contact.flight``: relative to the stop the tip is at
+Relative to the stop the tip is at y(t) = -G + A cos(w (t - t_p)) + u(t), as in ``contact.flight.bounds`` with
+phi = 1 and without other modes.  From strobe to strobe (u, u') is multiplied by the constant flow of a
+period, if y stays below zero meanwhile.  The proof is the comparison of that file, with its rho and d at the
+strobe, the margin m for rounding and z = y + G - d.  By its bound (1), for |t - t_1| <= pi/w,
 
-    y(t) = -G + A cos(w (t - t_p)) + u(t),
-
-with G the distance of the stop from the tip's mean place, A and t_p height and time of the steady peak and u
-the free deviation.  From strobe to strobe (u, u') is multiplied by the constant flow of a period, if y stays
-below zero meanwhile.  The proof is the comparison of ``contact.flight.bounds`` without other modes: with
-rho = sqrt(u^2 + (u'/omega)^2) at the strobe, d = (|w^2 - omega^2| + c omega) rho/w^2, the margin m for
-rounding and z = y + G - d, for |t - t_1| <= pi/w
-
-    z(t) <= z_1 cos(w (t - t_1)) + (z_1'/w) sin(w (t - t_1)) <= sqrt(z_1^2 + (z_1'/w)^2),                (1)
+    z(t) <= sqrt(z_1^2 + (z_1'/w)^2),
 
 and y <= rho - G where cos(w (t - t_p)) <= 0.  Let rho + m < G and d + m < G, and t_p lie in the middle half
 of the period (below resonance it does, unless the mode's sign puts it at the strobe).
@@ -72,10 +67,7 @@ def rising_zero(table, u, v, t):
             # the error after this step is below rounding
             un, vn = taylor_flow(table.mode, un, vn, x)
             return t + x, un, vn, y1 + x * y2
-        if y0 < 0.0:
-            low = t
-        else:
-            high = t
+        low, high = (t, high) if y0 < 0.0 else (low, t)
         # Halley's step where it is close to Newton's
         change = 0.5 * x * y2
         t += x if abs(change) > 0.25 * y1 else -y0 / (y1 + change)

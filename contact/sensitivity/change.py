@@ -20,16 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beam import ModalChange, ModalModel
-from beam.parameters import (
-    Array,
-    final,
-    require,
-    require_array,
-    require_each,
-    require_kind,
-    require_within,
-    shown,
-)
+from beam.parameters import Array, final, require, require_array, require_each, require_kind, require_within
 from contact.flight.variation import Variation, variation
 from contact.oscillator import ImpactOscillator, dynamic_stiffness, require_one_stop
 
@@ -102,14 +93,12 @@ class Sensitivities:
         object.__setattr__(self, "changes", changes)
         law, n = self.oscillator.stop.law, self.oscillator.n_modes
         known = len(law.adjustable)
-        require(
-            self.oscillator.load is None or not self.changes,
-            "load is given; it must be None for derivatives with respect to numbers of the oscillator",
-        )
+        words = "load is given; it must be None for derivatives with respect to numbers of the oscillator"
+        require(self.oscillator.load is None or not self.changes, words)
         for change in self.changes:
             size = n if change.model is None else change.model.omega.size
             require(size == n, f"model of the change has {size} modes; the oscillator has {n}")
-            words = f"law of the change is {shown(change.law)}; {type(law).__name__} has {known} numbers"
+            words = f"law of the change is {change.law!r}; {type(law).__name__} has {known} numbers"
             require(not any(change.law[known:]), words)
 
     def _row(self, name: str) -> Array:
@@ -152,10 +141,8 @@ class Sensitivities:
         damping = 1j * (change["decay_rate"] * w + model.decay_rate * w_dot)
         stiffness = 2.0 * (model.omega * change["omega"] - w * w_dot) + damping
         push = change["participation"] * w**2 + 2.0 * model.participation * w * w_dot
-        found: NDArray[np.complex128] = (push - steady * stiffness) / dynamic_stiffness(
-            model.omega, model.decay_rate, w
-        )
-        return found
+        dynamic = dynamic_stiffness(model.omega, model.decay_rate, w)
+        return np.asarray((push - steady * stiffness) / dynamic)
 
     @cached_property
     def tip_response(self) -> NDArray[np.complex128]:
@@ -172,17 +159,13 @@ class Sensitivities:
     @cached_property
     def variation(self) -> Variation:
         """All derivatives in the form that compiled functions take."""
+        known = self.oscillator.numbers(), self.oscillator.tip_response()
         if not self.changes:
-            return variation(self.oscillator.numbers(), self.oscillator.tip_response())
-        tip, law = self.tip_response, self._row("law")
-        return variation(
-            self.oscillator.numbers(),
-            self.oscillator.tip_response(),
-            2.0 * self.oscillator.model.omega * self.model["omega"],
-            self.model["decay_rate"],
-            self.model["phi"],
-            np.column_stack([self.level, tip.real, tip.imag, self.frequency, law]),
-        )
+            return variation(*known)
+        tip, change, law = self.tip_response, self.model, self._row("law")
+        square = 2.0 * self.oscillator.model.omega * change["omega"]
+        scalars = np.column_stack([self.level, tip.real, tip.imag, self.frequency, law])
+        return variation(*known, square, change["decay_rate"], change["phi"], scalars)
 
     def steady(self, clock: float | Array) -> Array:
         """Derivatives of the steady motion (q, q') at fixed times `clock` [s] after a strobe, shape
@@ -206,14 +189,10 @@ def change_along(path: Path, p: float, low: float, high: float) -> Change:
     rows = np.array([_numbers(path(q)) for q in middle + STENCIL * stride])
     powers = np.vander((middle - p) / stride + STENCIL, increasing=True)
     rates, n = np.linalg.solve(powers, rows)[1] / stride, (rows.shape[1] - 5) // 4
-    *model, (gap, first, second, frequency, amplitude) = np.split(rates, n * np.arange(1, 5))
-    return Change(
-        model=ModalChange(**dict(zip(ARRAYS, model, strict=True))),
-        gap=float(gap),
-        law=(float(first), float(second)),
-        frequency=float(frequency),
-        amplitude=float(amplitude),
-    )
+    *arrays, others = np.split(rates, n * np.arange(1, 5))
+    model = ModalChange(**dict(zip(ARRAYS, arrays, strict=True)))
+    gap, first, second, frequency, amplitude = others.tolist()
+    return Change(model=model, gap=gap, law=(first, second), frequency=frequency, amplitude=amplitude)
 
 
 def _numbers(oscillator: ImpactOscillator) -> Array:

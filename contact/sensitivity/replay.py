@@ -65,8 +65,8 @@ class Replay:
         numbers = self.vary.numbers
         words = "touches the stop", "grazes the stop", "comes to rest on the stop", "starts in the stop"
         for i in np.flatnonzero(met.kind != ImpactKind.IMPACT):
-            at, detail = float(met.start[i]), f"it {words[met.kind[i]]} there"
-            raise NoDerivative(time=at, gap=0.0, velocity=float(met.approach[i]), detail=detail)
+            at, speed = float(met.start[i]), float(met.approach[i])
+            raise NoDerivative(time=at, velocity=speed, detail=f"it {words[met.kind[i]]} there")
         self.start, self.end = met.start, np.nan_to_num(met.end, nan=np.inf)
         self.approach, self._phase, self._touch = met.approach, met.clock, met.deviations_start
         self.tangent = np.zeros((2 * n + 2, len(self.vary.scalars)))

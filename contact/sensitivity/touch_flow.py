@@ -3,9 +3,8 @@
 The flow starts at a touch, y = 0, and runs through a given number of contacts.  After the last one it goes on
 freely to the end of m drive periods, the wall ignored.  It is therefore smooth in the start through grazing,
 where the strobe map has its square root.  Amplitude and phase of the drive are ordinary initial values
-(``contact.flight.variation``).  Flights and touches are computed as in the simulation (``contact.flight``,
-``contact.touch``).  Tangents go through flights with the flows of the modes, through contacts with their
-series, and through instantaneous impacts by saltation matrices.
+(``contact.flight.variation``).  Tangents go through flights with the flows of the modes, through contacts
+with their series, and through instantaneous impacts by saltation matrices.
 """
 
 import numpy as np
@@ -134,5 +133,5 @@ def flow_error(outcome: int, time: float, velocity: float, detail: str) -> Conta
     """The error of a flow that did not reach its end, from a touch at `time` [s] with `velocity` [m/s]."""
     if outcome == TOO_STIFF:
         detail = f"more than {MOST_STEPS} steps in one touch, or a step of no length"
-        return ContactTooStiff(time=time, gap=0.0, velocity=velocity, detail=detail)
-    return NotPeriodic(time=time, gap=0.0, velocity=velocity, detail=detail)
+    kind = ContactTooStiff if outcome == TOO_STIFF else NotPeriodic
+    return kind(time=time, velocity=velocity, detail=detail)

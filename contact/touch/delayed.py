@@ -239,7 +239,7 @@ def repeated_touch(numbers, speed, m):
     back = np.eye(2) - flow @ turn
     if left <= 0.0 or abs(np.linalg.det(back)) <= SINGULAR:
         detail = f"no orbit of period {m} has a touch that waits for {delay:g} s"
-        raise NotPeriodic(time=delay, gap=0.0, velocity=speed, detail=detail)
+        raise NotPeriodic(time=delay, velocity=speed, detail=detail)
     steady = np.linalg.solve(back, before - flow @ after)
     met, left_with = before - steady, after - turn @ steady
     jump = free_flow(numbers, -delay)[0] @ left_with - met

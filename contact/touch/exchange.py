@@ -51,10 +51,7 @@ def maximum(push, slow, least, near, width):
     low, s, high = near
     for _ in range(60):
         force, slope, curvature = force_and_slopes(push, slow, least, s)
-        if slope > 0.0:
-            low = s
-        else:
-            high = s
+        low, high = (s, high) if slope > 0.0 else (low, s)
         new = s - slope / curvature if curvature < 0.0 else 0.5 * (low + high)
         if not low < new < high:
             new = 0.5 * (low + high)

@@ -37,11 +37,8 @@ def inverse_of(coupling, members, count, out):
     rows give equal numbers for two members, so that a symmetric motion stays symmetric.
     """
     if count == 2:
-        a, b, c = (
-            coupling[members[0], members[0]],
-            coupling[members[0], members[1]],
-            coupling[members[1], members[1]],
-        )
+        i, j = members[0], members[1]
+        a, b, c = coupling[i, i], coupling[i, j], coupling[j, j]
         left = a * c - b * b
         if left > DEPENDENT * a * c:
             out[0, 0], out[0, 1], out[1, 0], out[1, 1] = c / left, -b / left, -b / left, a / left

@@ -18,10 +18,9 @@ b w off a speed w in a unit of time, to first order in j and b and for any e,
 
     T = W (1 - (j + a b/2) W/(3 a)).
 
-Hops so low that rounding decides over them
-then change into a stay at once.  The mean force of hops is the force that holds the tip, so that the modes
-differ from their motion under the hops by h.  The impulse that takes the speed w off takes the energy
-w^2/(2 sum phi^2), which the hops would lose together.
+Hops so low that rounding decides over them then change into a stay at once.  The mean force of hops is the
+force that holds the tip, so that the modes differ from their motion under the hops by h.  The impulse that
+takes the speed w off takes the energy w^2/(2 sum phi^2), which the hops would lose together.
 
 In a stay (regime SUSTAINED) the tip is held by the force that makes d'' = 0, until that force would pull; the
 series is that of ``contact.touch.time_series``.

@@ -29,20 +29,7 @@ MARKS = np.dtype([(name, "i8") for name in ("logged", "sampled", "strobed", "imp
 """Rows in use of log, samples and strobes, and impacts since the last strobe, all in the first record;
 whether a stop is touched, and the row of its last touch, in the record of its number."""
 
-_NAMES = (
-    "stretch",
-    "start",
-    "end_stretch",
-    "end",
-    "approach",
-    "rebound",
-    "loss",
-    "impulse",
-    "peak_force",
-    "kind",
-    "stop",
-    "together",
-)
+_NAMES = "stretch start end_stretch end approach rebound loss impulse peak_force kind stop together".split()
 _WHOLE = ("stretch", "end_stretch", "kind", "stop", "together")
 TOUCH = np.dtype([(name, "i8" if name in _WHOLE else "f8") for name in _NAMES])
 """A touch: stretch and clock of its start and of its end [s], velocity towards the stop at both [m/s], energy
@@ -96,8 +83,7 @@ def open_touch(record, stop, stretch, clock, approach, kind, u, v):
     row, n = record.log[i], u.size
     row.stretch, row.start, row.end_stretch, row.end = stretch, clock, stretch, math.nan
     row.approach, row.rebound, row.loss, row.kind, row.stop = approach, math.nan, 0.0, kind, stop
-    row.impulse = row.peak_force = math.nan
-    row.together = 0
+    row.impulse, row.peak_force, row.together = math.nan, math.nan, 0
     put_state(record.log_state[i], 0, u, v)
     record.log_state[i, 2 * n :] = math.nan
 

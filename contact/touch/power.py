@@ -71,8 +71,7 @@ INVERSE = 1.0 / np.maximum(1.0, np.arange(64.0))  # 1/n
 @part
 def law_of(numbers):
     """m, m x, m y and c."""
-    table = numbers.table
-    m, outer, inner = int(table[0, 0]), int(table[0, 1]), int(table[0, 2])
+    m, outer, inner = int(numbers.table[0, 0]), int(numbers.table[0, 1]), int(numbers.table[0, 2])
     return m, outer, inner, numbers.number1 * (numbers.number0 if inner == 0 else 1.0)
 
 

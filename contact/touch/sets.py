@@ -61,17 +61,10 @@ def new_sets(numbers, states):
         for j in range(count):
             for k in range(modes.shape[1]):
                 coupling[i, j] += modes[STACKED * i + WEIGHT, k] * modes[STACKED * j + WEIGHT, k]
-    return Sets(
-        aligned(ORDER + 1, modes.shape[1]),
-        np.zeros((count, ORDER + 1)),
-        np.zeros((count, ORDER + 1)),
-        coupling,
-        np.zeros((count, count)),
-        np.zeros(count, np.int64),
-        np.zeros(count, np.int64),
-        np.zeros((7, count)),
-        states,
-    )
+    rows, inverse = aligned(ORDER + 1, modes.shape[1]), np.zeros((count, count))
+    heights, forces = np.zeros((count, ORDER + 1)), np.zeros((count, ORDER + 1))
+    members, event, values = np.zeros(count, np.int64), np.zeros(count, np.int64), np.zeros((7, count))
+    return Sets(rows, heights, forces, coupling, inverse, members, event, values, states)
 
 
 @part

@@ -47,16 +47,10 @@ class TangentWorkspace(NamedTuple):
 def new_tangent_workspace(order, size, columns):
     """Workspace for `columns` tangents of `size` = 2 n_modes + 2 numbers, and for the motion itself."""
     m, n = (columns + LANES) // LANES * LANES, order + 1
-    return TangentWorkspace(
-        aligned(n, size * m),
-        aligned(1, size * m)[0],
-        aligned(n, m),
-        aligned(n, m),
-        aligned(1, m)[0],
-        aligned(1, m)[0],
-        Weights(np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n)),
-        np.zeros(n),
-    )
+    rows, sums, height, rate = aligned(n, size * m), aligned(1, size * m)[0], aligned(n, m), aligned(n, m)
+    weights = Weights(np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n))
+    force, damping = aligned(1, m)[0], aligned(1, m)[0]
+    return TangentWorkspace(rows, sums, height, rate, force, damping, weights, np.zeros(n))
 
 
 @kernel
@@ -111,16 +105,12 @@ def next_tangents(numbers, space, order):
 @kernel
 def add_sources(vary, space, order, columns):
     """Add the sources of the parameters to the next order, and a constant load to the motion itself."""
-    n, m, inverse, force = (
-        vary.numbers.size,
-        space.force.size,
-        1.0 / (order + 1.0),
-        space.weights.force[order],
-    )
+    n, m, inverse = vary.numbers.size, space.force.size, 1.0 / (order + 1.0)
+    force, time = space.weights.force[order], space.weights.time[order]
     shape, start = (2 * n + 2, m), columns - len(vary.scalars)
     sums, fresh = space.sums.reshape(shape), space.rows[order + 1].reshape(shape)
     for k in range(n):
-        fresh[n + k, columns] += inverse * vary.numbers.modes[LOAD, k] * space.weights.time[order]
+        fresh[n + k, columns] += inverse * vary.numbers.modes[LOAD, k] * time
         for p in range(columns - start):
             pull = vary.square[p, k] * sums[k, columns] + vary.decay[p, k] * sums[n + k, columns]
             fresh[n + k, start + p] -= inverse * (pull + vary.weight[p, k] * force)

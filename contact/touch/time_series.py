@@ -87,9 +87,8 @@ def longest_of_modes(numbers, stored, u, v, rows):
     speed = math.sqrt(scale * scale + stored)
     top, below = largest(rows[ORDER]), largest(rows[ORDER - 1])
     allowed = TOLERANCE * speed
-    power = min(
-        log_longest(ORDER * top, ORDER - 1, allowed), log_longest((ORDER - 1.0) * below, ORDER - 2, allowed)
-    )
+    last = log_longest(ORDER * top, ORDER - 1, allowed)
+    power = min(last, log_longest((ORDER - 1.0) * below, ORDER - 2, allowed))
     return min(math.exp(power), numbers.period), speed
 
 

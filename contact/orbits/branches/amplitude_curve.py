@@ -126,8 +126,8 @@ def whole_branch(
                 raise branch_ended(last, f"it is lost: {ended}")
             rise = last.slope * last.speed / (1.0 + last.excess)
             if math.isclose(last.speed, curve.fastest) and rise < PROPORTIONAL:
-                words = "at the greatest speed of the search the amplitude does not yet rise"
-                raise branch_ended(last, words)
+                raise branch_ended(
+                    last, "at the greatest speed of the search the amplitude does not yet rise"
+                )
         return curve, points, branch
-    words = f"no orbit of period {family.m} was found to start from"
-    raise BranchEnded(time=0.0, gap=0.0, velocity=0.0, detail=words)
+    raise BranchEnded(detail=f"no orbit of period {family.m} was found to start from")

@@ -15,17 +15,9 @@ import numpy as np
 
 from contact.errors import ContactError
 from contact.orbits.branches.curve import BEND, CROSSING, Curve, grazes
-from contact.orbits.branches.events import (
-    CLOSE,
-    NEARLY,
-    Event,
-    event_at,
-    events_between,
-    refined,
-    with_undecided,
-)
+from contact.orbits.branches.events import CLOSE, Event, event_at, events_between, refined, with_undecided
 from contact.orbits.families.newton import CurvePoint
-from contact.orbits.families.touch_orbit import PeriodicOrbit
+from contact.orbits.families.touch_orbit import NEARLY, PeriodicOrbit
 
 SMALLEST, MOST_STEPS = 1e-9, 5000
 """Step of arc length at which a branch is given up and to which a graze is located; and bound of steps."""

@@ -1,8 +1,7 @@
 """Families of periodic orbits followed over the drive amplitude, with their folds and other events.
 
-A family is followed in the arc length of its unknowns, of which the last is log v, v the approach velocity of
-the first touch (``contact.orbits.families.newton_family``).  Down to grazing a step changes v by a
-factor.  With several touches v can turn round along the curve (``contact.orbits.branches.branch``).
+The curve is that of ``contact.orbits.branches.amplitude_curve``.  Down to grazing a step changes the approach
+velocity by a factor.  With several touches this velocity can turn round along the curve.
 """
 
 from contextlib import suppress
@@ -10,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from beam.parameters import InvalidValue, require_array, require_kind, require_within
+from beam.parameters import require, require_array, require_kind, require_within
 from contact.errors import ContactError, NotPeriodic
 from contact.orbits.branches.amplitude_curve import (
     GREATEST_SPEED,
@@ -53,16 +52,12 @@ def follow(
     for name, value in (("low", low), ("high", high)):
         require_within(name, value, "m/s")
     require_within("step", step, "[1]", low=SMALLEST, high=GREATEST_STEP)
-    if not 0 < low < start.speed < high:
-        raise InvalidValue(
-            f"low and high are {low} and {high} m/s; they must enclose the start, {start.speed:g} m/s"
-        )
+    words = f"low and high are {low} and {high} m/s; they must enclose the start, {start.speed:g} m/s"
+    require(0 < low < start.speed < high, words)
     curve = AmplitudeCurve(like=start, family=family, slowest=low, fastest=high)
     branch = branch_of(curve, curve.start(), step, step)[0]
-    first, last = branch.orbits[0], branch.orbits[-1]
-    return replace(
-        branch, ended_low=_placed(branch.ended_low, first), ended_high=_placed(branch.ended_high, last)
-    )
+    ends = _placed(branch.ended_low, branch.orbits[0]), _placed(branch.ended_high, branch.orbits[-1])
+    return replace(branch, ended_low=ends[0], ended_high=ends[1])
 
 
 def _placed(ended: str, last: PeriodicOrbit) -> str:

@@ -11,8 +11,7 @@ number is only a sign:
                       two curves cross, as where an orbit of 2m periods runs through one of m
     grazing           +1 or -1: the tip gains or loses a touch of the stop (certified flights)
 
-An event is certain if a multiplier is where it must be, if the located orbit lies on the curve of its
-neighbours, and if no other event lies next to it.  Otherwise it is called "undecided".
+`Event` says when an event is called "undecided".
 """
 
 from collections.abc import Callable, Sequence
@@ -24,7 +23,7 @@ from beam.parameters import Array
 from contact.errors import ContactError
 from contact.orbits.branches.curve import Curve, why_no_neighbours
 from contact.orbits.families.newton import CurvePoint
-from contact.orbits.families.touch_orbit import PeriodicOrbit
+from contact.orbits.families.touch_orbit import NEARLY, PeriodicOrbit
 
 PLACE = 1e-12  # part of a step to which an event is located; a fold is exact to the square of it
 
@@ -41,7 +40,6 @@ probe and three halvings distinguish folds closer than a hundredth of a step."""
 MOST_HALVINGS, MIDDLES = 12, (0.5, 0.4, 0.6)
 """Bound of halvings of a step with an uncertain event; and parts of a step that are tried as its middle."""
 
-NEARLY = 1e-3  # difference between the touches of an orbit at a branch point, which is located only so far
 LEAST_TORUS = 1e-12  # the sign of a smaller test of a torus is rounding: without damping, some m_i m_j is 1
 
 

@@ -15,16 +15,12 @@ import numpy as np
 
 from beam.parameters import Array, require_kind
 from contact.errors import NoDerivative
-from contact.orbits.families.equations import drive_of, shoot, sizes_of, slopes_of, tip_slopes
+from contact.orbits.families.equations import STEEPEST, drive_of, shoot, sizes_of, slopes_of, tip_slopes
 from contact.orbits.families.touch_orbit import PeriodicOrbit
 from contact.sensitivity.change import Change, Sensitivities
 from contact.sensitivity.replay import Replay, deviation_rates_at_strobe
 from contact.simulation import simulate
 from contact.trajectory import Trajectory
-
-STEEPEST = 1e10
-"""Change of the start, in units of its size, per change of the equations, beyond which it is rounding.  At a
-fold there is no derivative at given amplitude."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -1,12 +1,8 @@
 """Branches of periodic orbits along a path p -> oscillator, such as a response curve in the drive frequency.
 
-An orbit starts at its first touch from z = (u, v, S, C), with the tip displacement y over the stop, and obeys
-
-    F_(u,v)(z, p) - (u, v) = 0,      y(z, p) = 0,      |(S, C)| = Z(p)
-
-with exact tangents in z and p (``contact.orbits.families.equations``).  These are 2 N + 2 equations for the
-2 N + 3 unknowns (z, p).  Their curve is followed in its own arc length (``contact.orbits.branches.branch``),
-and turns round where p does.
+The equations of ``contact.orbits.families.equations`` at the given amplitude |(S, C)| = Z(p), with exact
+tangents in z and p, are 2 N + 2 equations for the 2 N + 3 unknowns (z, p).  Their curve is followed in its
+own arc length (``contact.orbits.branches.branch``), and turns round where p does.
 """
 
 import math

@@ -31,6 +31,10 @@ from contact.sensitivity.replay import deviation_rates
 from contact.sensitivity.touch_flow import FLOWN, flow_error, flow_from_touch
 from contact.touch.passage import new_touches
 
+STEEPEST = 1e10
+"""Change of an orbit per change of the amplitude or approach speed that picks it, in units of their sizes,
+above which it is rounding.  At a fold the amplitude does not pick an orbit."""
+
 
 def sizes_of(oscillator: ImpactOscillator) -> Array:
     """Sizes of the deviations (u, v) of all modes, by which unknowns and residuals are scaled."""

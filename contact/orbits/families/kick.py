@@ -5,10 +5,8 @@ changes the deviations of all modes by B(v), referred to the touch by their free
 happens once in m drive periods follows from B (``contact.orbits.families.single_impact``).  The p_m orbit
 ends (fold) where its amplitude is smallest.  With Newton's law B is proportional to v and the result exact.
 
-A law can have its orbits in closed form (`repeated_touch` of ``contact.touch``).
-
-The real collision starts with the ringing that the last one has left, and at another acceleration of the tip,
-which this neglects.
+A law can have its orbits in closed form (`repeated_touch` of ``contact.touch``).  The real collision starts
+with the ringing that the last one has left, and at another acceleration of the tip, which this neglects.
 """
 
 import math

@@ -96,7 +96,7 @@ def newton(
             break
     if found is None or not best < ROUNDED:
         words = f"Newton's method found no orbit of period {here.orbit.m} (residual {error:.1e})"
-        raise NotPeriodic(time=0.0, gap=0.0, velocity=0.0, detail=words)
+        raise NotPeriodic(detail=words)
     x, here, matrix, across = found
     length = float(np.linalg.norm(across))
     direction = across / length

@@ -15,7 +15,7 @@ import numpy as np
 
 from beam.parameters import Array, require, require_kind, require_whole, require_within
 from contact.errors import NotPeriodic
-from contact.orbits.families.equations import driven_at, shoot, sizes_of
+from contact.orbits.families.equations import STEEPEST, driven_at, shoot, sizes_of
 from contact.orbits.families.kick import KickFamily
 from contact.orbits.families.newton import Iterate, newton
 from contact.orbits.families.touch_orbit import PeriodicOrbit
@@ -23,10 +23,6 @@ from contact.oscillator import ImpactOscillator
 from contact.sensitivity.change import Sensitivities
 from contact.simulation import simulate
 from contact.trajectory import ImpactKind, Regime, State
-
-STEEPEST = 1e10
-"""Change of an unknown along the branch, over that of the approach speed, both in units of their size.
-Beyond this value it is rounding: the approach speed does not tell an orbit from its neighbours."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -72,13 +68,8 @@ class NewtonFamily:
         orbit, miss, flow = shoot(Sensitivities(oscillator=here), at, start, self.m, self.impacts, speed)
         stretch = np.append(self._sizes, speed)
         closing = flow @ np.vstack([np.eye(n, size), rows]) - np.eye(n, size)
-        return Iterate(
-            orbit,
-            miss / self._sizes,
-            closing * stretch / self._sizes[:, None],
-            drive @ rows * stretch / (orbit.amplitude * grazing),
-            speed * np.eye(size)[-1],
-        )
+        slopes = drive @ rows * stretch / (orbit.amplitude * grazing), speed * np.eye(size)[-1]
+        return Iterate(orbit, miss / self._sizes, closing * stretch / self._sizes[:, None], *slopes)
 
     def _solve(self, x: Array, *, speed: float | None = None, excess: float = 0.0) -> PeriodicOrbit:
         """The orbit next to `x` with its approach speed, or with this excess [1]."""
@@ -121,8 +112,7 @@ class NewtonFamily:
         hits = trajectory.impacts.kind == ImpactKind.IMPACT
         hits[:1] &= state.regime == Regime.OUTSIDE  # a contact under way began with a touch that is not known
         if not np.any(hits):
-            words = "the motion has no impact to start from"
-            raise NotPeriodic(time=state.time, gap=0.0, velocity=0.0, detail=words)
+            raise NotPeriodic(time=state.time, detail="the motion has no impact to start from")
         i = int(np.flatnonzero(hits)[0])
         start = self.unknowns(trajectory.impacts.deviations_start[i].ravel(), trajectory.impacts.approach[i])
         return self._solve(start, excess=self.oscillator.excess)

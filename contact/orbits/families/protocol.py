@@ -2,13 +2,8 @@
 
 A family holds the orbits of period m with one collision, or a given number of touches, in m drive periods.
 It is a curve over the approach speed v of the first touch.  Over the excess F/F_g - 1 it turns round at its
-fold, where a node and a saddle meet.  Four descriptions offer it:
-
-    ``single_impact.MaximalFamily``      Newton's law, several modes, closed form
-    ``kick.KickFamily``                  any law, the collision as a kick of all modes
-    ``contact.orbits.shooting.Shooting`` any law, any number of touches, Newton's method on exact tangents
-    ``nordmark_orbits.MapFamily``        the Nordmark map (``contact.maps``), closed form; its "speed" is
-                                         sqrt(x) at the impact
+fold, where a node and a saddle meet.  ``contact.orbits.families`` lists three descriptions.  A fourth is
+``contact.maps.nordmark_orbits.MapFamily``, whose "speed" is sqrt(x) at the impact.
 """
 
 from typing import Protocol

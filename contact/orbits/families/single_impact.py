@@ -147,10 +147,9 @@ class SingleImpactFamily(ABC):
         matrices, trapped = self._closing
         back = np.flatnonzero(trapped & np.any(jump != 0.0, axis=1))  # one that is not kicked stays at rest
         if back.size:
-            raise InvalidValue(
-                f"omega[{back[0]}] is {self.oscillator.model.omega[back[0]]} rad/s, a mode that is back "
-                f"after {self.m} drive periods; it must have damping or another frequency"
-            )
+            given = f"omega[{back[0]}] is {self.oscillator.model.omega[back[0]]} rad/s, a mode that is back"
+            words = f"after {self.m} drive periods; it must have damping or another frequency"
+            raise InvalidValue(f"{given} {words}")
         closed: Array = np.einsum("kij,kj->ki", matrices, jump)
         return closed
 

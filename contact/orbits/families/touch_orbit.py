@@ -30,6 +30,7 @@ ALIKE = 1e-5
 """Difference between touches that is taken for none.  Behind a branch point touches part in proportion to the
 distance, and the equations are singular up to about this distance."""
 
+NEARLY = 1e-3  # the same for an orbit at a branch point, which is located only so far
 SLACK = 1e-6  # part of a drive period by which the closing touch may be missed, in addition to the residual
 
 
@@ -100,24 +101,21 @@ class TouchOrbit(ABC):
         """Whether the last flight meets the wall at its end only (certified; a graze counts as a meeting)."""
         time, u, v, leaves, slack = self.release()
         length, numbers = self.duration - time, self.oscillator.numbers()
-        outcome, met = first_crossing(
-            numbers, self.phase + time, u.copy(), v.copy(), length * (1.0 + CLOSING), 1 if leaves else 2
-        )
+        base, until, order = self.phase + time, length * (1.0 + CLOSING), 1 if leaves else 2
+        outcome, met = first_crossing(numbers, base, u.copy(), v.copy(), until, order)
         return bool(outcome == FREE or (outcome == CROSSES and abs(met - length) <= slack))
 
     def failure(self, kind: type[Failure], detail: str) -> Failure:
         """The error of this kind at the first touch, with its time and velocity."""
-        return kind(time=self.phase, gap=0.0, velocity=self.speed, detail=detail)
+        return kind(time=self.phase, velocity=self.speed, detail=detail)
 
     def state(self) -> State:
         """The physical state just before the first touch, on the near side of the stop to the last digit."""
         numbers = self.oscillator.numbers()
-        q, q_rate = steady_motion(numbers, np.array([self.phase]))
+        q, q_rate = steady_motion(numbers, self.phase)
         behind = max(0.0, tip_state(numbers, self.phase, self.displacement, self.velocity)[0])
-        back = numbers.least_change(behind)  # rounding of the sum alone
-        return State(
-            displacement=self.displacement - back + q[0], velocity=self.velocity + q_rate[0], time=self.phase
-        )
+        u = self.displacement - numbers.least_change(behind)  # rounding of the sum alone
+        return State(displacement=u + q, velocity=self.velocity + q_rate, time=self.phase)
 
     def strobe_state(self) -> State:
         """The state at the strobe that follows the first touch."""

@@ -77,7 +77,7 @@ def strobe_covariance(
     source[-1, -1] = (1.0 - memory**2) * deviation**2
     whole = reduce(lambda done, step: step @ done, steps, np.eye(size))
     if not np.max(np.abs(np.linalg.eigvals(whole))) < 1.0:
-        raise NotPeriodic(time=0.0, gap=0.0, velocity=0.0, detail="an unstable orbit has no cloud")
+        raise NotPeriodic(detail="an unstable orbit has no cloud")
     gathered = reduce(lambda c, step: step @ c @ step.T + source, steps, np.zeros((size, size)))
 
     from scipy.linalg import solve_discrete_lyapunov  # slow to import

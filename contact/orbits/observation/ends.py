@@ -136,10 +136,8 @@ def orbit_end(
             lost = trial
         else:
             held, state, step = trial, now, 2.0 * step
-    words = (
-        f"the bound of {MOST_STEPS} steps is used up at excess {held:.6g}; more most_cycles make them longer"
-    )
-    raise BranchEnded(time=0.0, gap=0.0, velocity=0.0, detail=words)
+    words = f"the bound of {MOST_STEPS} steps is used up at excess {held:.6g}"
+    raise BranchEnded(detail=f"{words}; more most_cycles make them longer")
 
 
 def _exact_end(strobed: Any, bracket: OrbitEnd[Any]) -> tuple[OrbitEnd[Any] | None, Any]:

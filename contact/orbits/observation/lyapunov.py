@@ -4,11 +4,9 @@ J_n is the derivative of the period map at the n-th strobe.  With Q R = J_n Q', 
 
     lambda_i = < log |R_ii| >        [per drive period],  largest first.
 
-For an impact oscillator J_n comes from the variational replay of the motion
-(``contact.sensitivity.replay``).  A strobe that falls into a contact is passed over: that J_n spans more than
-one period.
-On an orbit of period m the exponents are log|mu_i|/m, with mu_i the eigenvalues of J_m ... J_1.  For Eq. (1)
-of the letter (1996) the determinants give
+For an impact oscillator J_n comes from ``contact.sensitivity.replay``.  A strobe that falls into a contact is
+passed over: that J_n spans more than one period.  On an orbit of period m the exponents are log|mu_i|/m, with
+mu_i the eigenvalues of J_m ... J_1.  For Eq. (1) of the letter (1996) the determinants give
 
     sum of lambda_i = -mu/f + 2 log(tau) x impacts per period.
 
@@ -56,7 +54,7 @@ class Exponents:
 def _finite(matrix: Array) -> Array:
     """The matrix; NoDerivative if it has left the range of numbers."""
     if not np.all(np.isfinite(matrix)):
-        raise NoDerivative(time=0.0, gap=0.0, velocity=0.0, detail="the derivatives are not finite")
+        raise NoDerivative(detail="the derivatives are not finite")
     return matrix
 
 
@@ -106,8 +104,7 @@ def orbit_exponents(strobed: DifferentiableMap[S], state: S, m: int) -> Exponent
     done = 0
     while done % m or done == 0:  # a strobe in contact is never the last: m periods later it is again
         if done > MOST_STRETCHES * m:
-            words = "every strobe of the orbit is in contact"
-            raise NotPeriodic(time=0.0, gap=0.0, velocity=0.0, detail=words)
+            raise NotPeriodic(detail="every strobe of the orbit is in contact")
         found, state = strobed.jacobians(state, m - done % m)
         for step, span in found:
             matrix, done = _finite(step @ matrix), done + span

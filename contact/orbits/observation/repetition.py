@@ -60,7 +60,7 @@ def require_orbit(strobed: DifferentiableMap, state, m: int) -> None:
     away = np.abs(strobed.orbit(state, m).points[-1] - strobed.coordinates(state)).max()
     if not away <= RETURNS * strobed.scale:
         words = f"after {m} periods it is {away:.3g} from the state, of a scale of {strobed.scale:g}"
-        raise NotPeriodic(time=getattr(state, "time", 0.0), gap=0.0, velocity=0.0, detail=words)
+        raise NotPeriodic(time=getattr(state, "time", 0.0), detail=words)
 
 
 @kernel

@@ -102,10 +102,9 @@ def orbit_diagram(
             else:
                 state, cycles[i] = here.orbit(state, settle_cycles).end, settle_cycles
                 recorded = here.orbit(state, max(record_cycles, 2 * largest_m))
-                m[i] = repeats_after(
-                    recorded.points, recorded.impacts, largest_m=largest_m, tolerance=TOLERANCE * here.scale
-                )
-                impacts[i] = recorded.impacts[-m[i] :].sum()
+                rows, hits, close = recorded.points, recorded.impacts, TOLERANCE * here.scale
+                m[i] = repeats_after(rows, hits, largest_m=largest_m, tolerance=close)
+                impacts[i] = hits[-m[i] :].sum()
             state = recorded.end
             shape, seen = (len(recorded.points),), observe(recorded.points)
             points[i] = require_array("observe(points)", seen, "its unit", shape=shape)[-record_cycles:]

@@ -106,17 +106,13 @@ def settle(
     largest_m = require_whole("largest_m", largest_m, "drive periods")
     fine = require_within("tolerance", tolerance, "[1]", low=0) * strobed.scale
     block, cycles = 2 * largest_m, 0
-    proof: Any = None
-    if prove and isinstance(strobed, StroboscopicMap):
-        proof = _Proof(strobed, largest_m, fine)
+    proof: Any = _Proof(strobed, largest_m, fine) if prove and isinstance(strobed, StroboscopicMap) else None
     while True:
         strobes = strobed.orbit(state, block)
         state, cycles = strobes.end, cycles + block
-        m = repeats_after(strobes.points, strobes.impacts, largest_m=largest_m, tolerance=fine)
-        over = cycles >= most_cycles
-        if not over and m != repeats_after(
-            strobes.points, strobes.impacts, largest_m=m, tolerance=ALIKE * fine
-        ):
+        points, impacts, over = strobes.points, strobes.impacts, cycles >= most_cycles
+        m = repeats_after(points, impacts, largest_m=largest_m, tolerance=fine)
+        if not over and m != repeats_after(points, impacts, largest_m=m, tolerance=ALIKE * fine):
             m = 0
         if proof is not None and not over and m == 0:
             m, strobes = proof.after(strobes)
@@ -181,9 +177,8 @@ class _Proof:
     def after(self, strobes: StrobedOrbit[State]) -> tuple[int, StrobedOrbit[State]]:
         """m, and a block on the orbit in the phase of the motion; 0 and `strobes` without a proof."""
         strobed, points, end = self.strobed, strobes.points, strobes.end
-        rough = repeats_after(
-            points, strobes.impacts, largest_m=self.largest_m, tolerance=FIRST_LOOK * strobed.scale
-        )
+        close = FIRST_LOOK * strobed.scale
+        rough = repeats_after(points, strobes.impacts, largest_m=self.largest_m, tolerance=close)
         hits, found = int(strobes.impacts[-rough:].sum()), None
         if self.known is None or (self.known[0].m, self.known[0].impacts) != (rough, hits):
             self.known, self.before = None, np.inf
