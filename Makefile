@@ -21,6 +21,7 @@ site: $(READY)
 
 # `python -m pytest` puts this folder first on the path, so that what is tested is what lies here.
 test: $(READY)
+	@$(ONE_THREAD) $(BIN)/python -m contact.warm_up --all
 	$(ONE_THREAD) $(BIN)/python -m pytest -n 2 -rs -m "not slow"
 
 test-slow: $(READY)
@@ -36,7 +37,7 @@ test-generic: $(READY)
 	export NUMBA_CACHE_DIR="$$cache" && \
 	export NPY_DISABLE_CPU_FEATURES="$$($(BIN)/python -c '$(SIMD)')" && \
 	export NUMBA_CPU_NAME=generic NUMBA_CPU_FEATURES= OPENBLAS_CORETYPE=Prescott $(ONE_THREAD) && \
-	$(BIN)/python -m contact.warm_up && \
+	$(BIN)/python -m contact.warm_up --all && \
 	$(BIN)/python -m pytest -n 2 -rs -m "not slow" $(NUMBERS)
 
 lint: $(READY)

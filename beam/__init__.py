@@ -45,7 +45,7 @@ if TYPE_CHECKING:
         with_tip_mass,
     )
     from .export import write_frames, write_mode_motion, write_modes
-    from .frequency_equation import ExactModes, UniformBeam, exact_modes, frequency_function
+    from .frequency_equation import ExactModes, UniformBeam, exact_modes
     from .large_amplitude import (
         Backbone,
         FiniteRotation,

@@ -118,7 +118,7 @@ class ModalModel:
         lowest = int(np.argmin(np.where(omega > 0.0, omega, np.inf)))
         ratio = 0.5 * self.decay_rate[lowest] / omega[lowest] if omega[lowest] > 0.0 else 0.0
         if ratio > GREATEST_RATIO:
-            words = f"a damping ratio of {ratio:.3g}; above {GREATEST_RATIO:g} it hardly swings"
+            words = f"a damping ratio of {ratio:.3g}; above {GREATEST_RATIO:g} it hardly oscillates"
             suspect(f"decay_rate is {self.decay_rate[lowest]:g} 1/s in the lowest mode, {words}")
 
     @classmethod
@@ -174,7 +174,7 @@ class ModalModel:
         omega, rate = self.omega[self.leading_mode], self.decay_rate[self.leading_mode]
         square = omega**2 - (0.5 * rate) ** 2
         given = f"omega is {omega} rad/s and decay_rate {rate} 1/s in mode 1"
-        require(square > 0.0, f"{given}; it does not swing, so there is no free period")
+        require(square > 0.0, f"{given}; it does not oscillate, so there is no free period")
         return float(2.0 * np.pi / np.sqrt(square))
 
     def truncated(self, count: int) -> ModalModel:

@@ -75,7 +75,7 @@ class Diverged(ContactError):
 
 
 class NotPeriodic(ContactError):
-    """An orbit that was asked to be periodic is not."""
+    """An orbit that should be periodic is not."""
 
     reason = "the motion did not settle on a periodic orbit"
 

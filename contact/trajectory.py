@@ -128,7 +128,7 @@ class Trajectory:
     strobe_impacts : ndarray of int, shape (n_strobes,)
         Impacts that began since the strobe before (or the start).
     time, displacement, velocity : ndarray, shapes (n_times,) and (n_times, n_modes)
-        The times that were asked for [s], and the states at them.
+        The requested times [s], and the states at them.
     impacts, evaluations : Impacts, int
         Every touch; and steps, or flights and sampled positions, that the method has made.
     """

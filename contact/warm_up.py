@@ -1,11 +1,16 @@
-"""`python -m contact.warm_up`: compile all kernels once, so that the first study starts at once.
+"""`python -m contact.warm_up [--all]`: compile kernels once, so that the first study starts at once.
 
 The machine code is kept (``contact.machine.compiled``).  Otherwise the first run of a study takes half a
-minute longer than the next.  Two processes share the work: kernels of a motion, and kernels of an orbit.
+minute longer than the next.  Two processes share the work: kernels of a motion, and kernels of an orbit.  The
+option adds the kernels of `simulate`, with one stop and with several, which the tests need as well.
 """
 
+import sys
 from concurrent.futures import ProcessPoolExecutor
+from dataclasses import replace
 from multiprocessing import get_context
+
+import numpy as np
 
 from beam import single_mode
 from contact.drive import HarmonicDrive
@@ -13,6 +18,7 @@ from contact.laws import ContactLaw, HertzContact, NewtonRestitution
 from contact.maps.stroboscope import StroboscopicMap
 from contact.orbits.shooting import Shooting
 from contact.oscillator import ImpactOscillator
+from contact.simulation import simulate
 from contact.stop import Stop
 
 
@@ -34,7 +40,17 @@ def _orbits() -> None:
     Shooting(oscillator=_oscillator(HertzContact(stiffness=1e9)), m=5).at_speed(0.1)
 
 
+def _records() -> None:
+    simulate(_oscillator(HertzContact(stiffness=1e9)), periods=2, times=np.array([0.01]))
+
+
+def _several() -> None:
+    one = _oscillator(NewtonRestitution(local_restitution=0.1))
+    simulate(replace(one, stops=(*one.stops, Stop(gap=0.01, law=one.stop.law, side=-1))), periods=2)
+
+
 if __name__ == "__main__":
     with ProcessPoolExecutor(max_workers=2, mp_context=get_context("spawn")) as pool:
-        for task in [pool.submit(_motions), pool.submit(_orbits)]:
+        more = [_several, _records] if "--all" in sys.argv else []
+        for task in [pool.submit(kernels) for kernels in (*more, _orbits, _motions)]:
             task.result()

@@ -49,7 +49,7 @@ EQUIVALENT = {
     "contact/one_mode/one_impact.py: rse = 1.0 / (rate + x * x * (0.5 * jerk - x * snap / 6.0))": CHECKED,
     "contact/one_mode/one_impact.py: d += d * (y2 * ratio)": CHECKED,
     "contact/virtual_motion.py: near, far = (far, far + 2 * (direction * step))": STRIDE,
-    "contact/virtual_motion.py: step = 2 * (self.motion.period / SAMPLES)": STRIDE,
+    "contact/virtual_motion.py: step = 2 * (self.numbers.period / SAMPLES)": STRIDE,
     "contact/orbits/branches/events.py: if not 0.0 < t < 1.0:": "more orbits are tried for a pair of folds",
     "contact/touch/linear.py: for n in range(time_series.ORDER - 1 - 1):": "the last order is below rounding",
 }

@@ -5,11 +5,15 @@ from __future__ import annotations
 import dataclasses
 import inspect
 import re
+from pathlib import Path
 
 import pytest
 
 import beam
 import contact
+
+ROOT = Path(__file__).parent.parent
+NOT_PLAIN = r"(?i)\b(told|asked|swing|swings|pace|those of|stands for)\b"
 
 
 @pytest.mark.parametrize("package", [beam, contact], ids=lambda package: package.__name__)
@@ -27,3 +31,11 @@ def test_fields_and_parameters_of_public_names_are_explained(package):
             continue
         unexplained += [f"{name}: {part}" for part in wanted if not re.search(rf"\b{part}\b", text)]
     assert not unexplained
+
+
+def test_words_are_plain():
+    """These words name an instrument or a number as if it were a person, or need a second reading."""
+    places = [ROOT / "README.md", *(ROOT / "docs").glob("*.md")]
+    places += [path for package in ("beam", "contact", "studies") for path in (ROOT / package).rglob("*.py")]
+    found = {path.relative_to(ROOT): re.findall(NOT_PLAIN, path.read_text("utf-8")) for path in places}
+    assert {path: words for path, words in found.items() if words} == {}

@@ -180,6 +180,14 @@ def test_public_names_exist_and_type_checkers_see_them(door):
     assert set(module.__all__) <= told
 
 
+def test_few_public_names_are_used_by_no_study_and_no_page():
+    """What users meet nowhere need not be public; types of results may be."""
+    texts = [*(ROOT / "studies").rglob("*.py"), *(ROOT / "docs").glob("*.md"), ROOT / "README.md"]
+    words = set(re.findall(r"\w+", "".join(path.read_text(encoding="utf-8") for path in texts)))
+    names = {name for door in DOORS for name in importlib.import_module(door).__all__}
+    assert len(names - words) <= 15, sorted(names - words)
+
+
 def test_one_version_everywhere():
     versions = {PROJECT["version"], *(importlib.import_module(package).__version__ for package in PACKAGES)}
     versions |= set(re.findall(r"^version: (.*)$", (ROOT / "CITATION.cff").read_text(), re.MULTILINE))

@@ -11,7 +11,7 @@ Cameron and J. H. Griffin, J. Appl. Mech. 56 (1989) 149).
 
 Deviations are e^(lambda t) sum_k d_k e^(i k w t). Their lambda make the matrix of the equations singular if
 i k w + lambda replaces i k w (G. W. Hill's method). The effective period is that of the single linear mode
-under the same drive whose deviations have the same frequency as those of mode 1.
+under the same drive whose deviations have the same frequency as in mode 1.
 """
 
 from __future__ import annotations

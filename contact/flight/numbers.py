@@ -3,7 +3,7 @@
 One container holds all that flights, touches and orbits need: scalars, and one table with the modes as
 columns.  The table is filled up to a multiple of eight with modes that stay zero, so that a processor handles
 several in one instruction.  (Passing a dozen arrays to a kernel would take several times as long as
-propagating eight modes.)  The equations are those of ``contact.flight.modal_flow``.
+propagating eight modes.)  The equations stand in ``contact.flight.modal_flow``.
 
 An oscillator with several stops has one `Numbers` too, in which their tables are stacked.  Each stop sees the
 same modes with weights and numbers of its own, and `seen_from` gives the `Numbers` as one of them sees it.
@@ -27,9 +27,9 @@ doubles, omega, 1/omega (or zero), 1/max(omega, c/2) (or the period), S, C, g/om
 ``contact.machine.vector_loops`` use the first four."""
 
 NUMBERS = 12
-"""In a stack, the row after those of a stop that holds `_OWN`; one more holds law, numbers, and where in the
-row `Numbers.table` its own table begins, with the numbers of its rows and columns, and whether stops that are
-met together act one after the other."""
+"""In a stack, the row after the rows of a stop, which holds `_OWN`.  One more row holds law, numbers, and where
+in the row `Numbers.table` its own table begins, with the numbers of its rows and columns.  It also holds whether
+stops that are met together act one after the other."""
 STACKED = 14  # rows of the table for each of several stops
 
 _OWN = "level", "tip_sine", "tip_cosine", "amplitude", "gap", "inverse_mass"

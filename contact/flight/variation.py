@@ -10,7 +10,7 @@ series
 
     du = r v,   dv = r (-c v - omega^2 u) - phi (r N_d y(d) + r N_d' y'(d)),   dS = r w C,   dC = -r w S
 
-with r = dt/ds.  The sums over earlier orders, sum_j r_(n-j) x_j, are those of the motion itself.  A law
+with r = dt/ds.  The sums over earlier orders, sum_j r_(n-j) x_j, belong to the motion itself.  A law
 therefore only has to give the series of r, r N_d and r N_d' (`slopes`).
 
 The last columns of a matrix may belong to parameters p, each a direction in which the numbers of the

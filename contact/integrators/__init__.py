@@ -41,5 +41,5 @@ INTEGRATORS: dict[str, type[Integrator]] = {
 }
 """Every method of the package by its name."""
 
-__all__ = ["EXACT_NAMES", "INTEGRATORS", "Integrator", "Plan"]
+__all__ = ["INTEGRATORS", "Integrator", "Plan"]
 __all__ += sorted({kind.__name__ for kind in INTEGRATORS.values()})

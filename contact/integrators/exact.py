@@ -2,7 +2,7 @@
 
 Between touches every mode has a closed form (``contact.flight``), as in the letter (1996), note [11].  An
 impact law acts at once; a force law is followed through the contact by a power series (``contact.touch``).
-Nothing is discretised: the error is that of rounding, and no step can be too large.  The two methods of this
+Nothing is discretised: the error is rounding, and no step can be too large.  The two methods of this
 file differ only in the search for the next touch.
 
 `Exact` proves that it misses none, by a search of the package (``contact.flight.crossing``).

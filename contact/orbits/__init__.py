@@ -17,11 +17,10 @@ from contact.orbits.branches.path import follow_path
 from contact.orbits.families.kick import KickFamily
 from contact.orbits.families.protocol import Family, Orbit
 from contact.orbits.families.single_impact import Kick, MaximalFamily, SingleImpactOrbit
-from contact.orbits.observation.amplitude_scan import AmplitudeScan, ScannedColumn
+from contact.orbits.observation.amplitude_scan import AmplitudeScan
 from contact.orbits.observation.covariance import strobe_covariance, strobe_derivatives
 from contact.orbits.observation.ends import OrbitEnd, fold_excess, orbit_end
 from contact.orbits.observation.lyapunov import Exponents, map_exponents, orbit_exponents
-from contact.orbits.observation.repetition import repeats_after
 from contact.orbits.observation.scan import OrbitDiagram, orbit_diagram
 from contact.orbits.observation.settling import Settled, onset_m, onset_orbit, settle
 from contact.orbits.shooting import PeriodicOrbit, Shooting

@@ -130,7 +130,7 @@ a touch of a second stop."""
 CLOSEST = 4.0 * EPS  # part of a drive period next to the end in which no step is made
 
 Watch = Callable[[SimpleNamespace], Callable[..., bool]]
-"""From a law of ``touch.TOUCHES`` to watch(numbers, run, u, v, s, until, series, watcher), done at each step.
+"""From a law of ``touch.LAWS`` to watch(numbers, run, u, v, s, until, series, watcher), done at each step.
 The step leads from (u, v) at the clock of the run to `s`, in the law's own variable, at the clock `until`.
 It returns whether a second stop is touched on the way."""
 

@@ -140,7 +140,7 @@ def log_longest(last, order, allowed):
 
 @inlined
 def limited_by_force(s, push, last, mobility, speed, edge):
-    """The step `s`, or a shorter one where the orders of the force allow less than those of the modes.
+    """The step `s`, or a shorter one where the orders of the force allow less than the orders of the modes.
 
     That step is infinite if the last two orders of the modes are zero.  `push` is the series of the force on
     the modes, filled up to the order `last`: phi_k push_n/(n + 1) enters order n + 1 of the speeds.

@@ -16,7 +16,7 @@ from contact.touch.series import powers_of
 
 
 class Weights(NamedTuple):
-    """Series that a law computes from those of a step, each of shape (order + 1,)."""
+    """Series that a law computes from the series of a step, each of shape (order + 1,)."""
 
     time: np.ndarray  # r = dt/ds
     depth: np.ndarray  # r dN/dd

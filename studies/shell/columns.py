@@ -29,7 +29,7 @@ UNITS |= {"J": "j", "N": "newton", "N s": "newton_s", "µs": "us", "ms": "ms"}
 UNITS |= {"kg^(-1/2)": "per_sqrt_kg", "kg^(1/2)": "sqrt_kg", "kg^(-1/2) m^(-1)": "per_sqrt_kg_m"}
 """Unit -> the end of a column's name."""
 
-USUAL = {"frequency_hz": "drive frequency [Hz]", "excess": "excess F/F_g - 1", "m": "m"}
+USUAL = {"frequency_hz": "drive frequency [Hz]", "excess": "excess F/F_g - 1"}
 USUAL |= {"m": "period m; 0 for a motion without a period", "restitution": "restitution tau"}
 """Field -> its words, where the row gives none."""
 

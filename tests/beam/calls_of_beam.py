@@ -260,7 +260,5 @@ BEAM = (
        name="UniformBeam, clamped at its tip", value=dict(tip_mass=1.0)),
     of(beam.exact_modes, lambda: dict(beam=uniform(), count=2),
        kind=dict(beam=spring()), value=dict(count=each(0, 10**7))),
-    of(beam.frequency_function, lambda: dict(beam=uniform(), beta_length=[1.0, 2.0]),
-       kind=dict(beam=None, beta_length=["1"]), value=dict(beta_length=each([-1.0], [NAN]))),
 )
 # fmt: on

@@ -98,5 +98,5 @@ def test_without_damping_all_modes_get_the_same() -> None:
 
 
 def test_what_does_not_swing_has_no_free_period() -> None:
-    with pytest.raises(ValueError, match="does not swing"), pytest.warns(UserWarning, match="decay_rate"):
+    with pytest.raises(ValueError, match="does not oscillate"), pytest.warns(UserWarning, match="decay_rate"):
         beam.free_period_change(replace(THREE, decay_rate=[310.0, 1.0, 1.0]))

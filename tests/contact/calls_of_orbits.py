@@ -131,11 +131,6 @@ ORBITS = (
        kind=dict(strobed=EQ_1, excesses="1", observe=each(3, says(lambda p: "tip", "observe(points) is"))),
        value=dict(observe=says(lambda p: p, "observe(points) has shape"), settle_cycles=-1,
                   excesses=each(says([], "excesses is empty"), [[1e-3]]))),
-    of(orbits.repeats_after, lambda c: dict(
-           points=c.strobed.orbit(c.state, 20).points, impacts=c.strobed.orbit(c.state, 20).impacts,
-           largest_m=8, tolerance=1e-9), over="motion",
-       kind=dict(points="p"), value=dict(impacts=[0], points=each(
-           [0.0], np.zeros((20, 0)), says([[0.0]] * 3, "points has 3 strobes")))),
     of(orbits.AmplitudeScan, lambda: dict(oscillator=EQ_1, most_cycles=128),
        kind=dict(oscillator=each(None, nordmark())),
        value=dict(oscillator=each(UNDRIVEN, TWO_STOPS), most_cycles=127)),

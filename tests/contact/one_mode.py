@@ -57,7 +57,7 @@ class Period:
         """Status, impacts and approach velocities."""
         counts = np.zeros(1, dtype=np.int64)
         recorder = strobes_only(np.empty((1, 2)), counts)._replace(log=self.log, log_state=self.log_state)
-        status = advance(self.numbers, u, v, runs, int(runs[0]["period"]) + 1, 0.0, recorder, None)
+        status = advance(self.numbers, u, v, runs, int(runs[0]["stretch"]) + 1, 0.0, recorder, None)
         rows = self.log[: recorder.marks[0]["logged"]]
         return status, int(counts[0]), rows["approach"][rows["kind"] == IMPACT]
 
@@ -84,7 +84,7 @@ class Period:
             if status != DONE:
                 break
             assert mine_count == count
-            names = ["regime", "contact_order", "period", "clock"]
+            names = ["regime", "contact_order", "stretch", "clock"]
             assert ours[2][0][names] == runs[0][names]
             scale = max(abs(m.level) + math.hypot(m.tip_sine, m.tip_cosine), start, self.size(u, v))
             fastest = max(m.drive, m.omega[0], m.decay[0])

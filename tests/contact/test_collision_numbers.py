@@ -153,7 +153,7 @@ def test_minimum_of_the_outgoing_motion_ends_a_collision(before_minimum: float) 
 
 def test_touches_of_another_program_need_all_their_numbers() -> None:
     none = dict(times=np.zeros((2, 0)), states=np.zeros((2, 0, 2, 1)))
-    with pytest.raises(InvalidValue, match="numbers has loss; it must have approach, kind, loss, rebound"):
+    with pytest.raises(InvalidValue, match="columns has loss; it must have approach, kind, loss, rebound"):
         Impacts.of_states(beam(22.2, HERTZ, modes=1), **none, loss=[])
 
 

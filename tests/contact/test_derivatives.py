@@ -255,7 +255,7 @@ def test_a_simulated_motion_against_differences(name: str) -> None:
 
     found = orbits.motion_derivatives(oscillator, start, [change], periods=5, times=times)
     direction = np.concatenate([kicked.reshape(-1), [1.0]])
-    assert len(found.run.impacts) >= 2
+    assert len(found.trajectory.impacts) >= 2
     ours = (found.impact_time, found.strobes, found.states)
     for exact, difference in zip((one @ direction for one in ours), slopes(observed, 1e-7), strict=True):
         assert np.max(np.abs(difference - exact) / np.abs(exact).max(axis=0)) < 2e-5

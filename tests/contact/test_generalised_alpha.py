@@ -12,7 +12,7 @@ from whole_motions import DASHPOT, HERTZ, LOSSY, SPRING, accelerations
 from contact import ContactLaw, ImpactOscillator, LinearContact, State, simulate
 from contact.integrators import GeneralisedAlpha
 from contact.integrators.fixed_step import stiffness_at
-from contact.integrators.generalised_alpha import AlphaNumbers, limit, stable
+from contact.integrators.generalised_alpha import AlphaParameters, limit, stable
 
 NEWMARK = dict(), dict(beta=0.0), dict(beta=1 / 6), dict(beta=0.5, gamma=0.8), dict(beta=0.1, gamma=0.7)
 FORMS = [GeneralisedAlpha.newmark(step=1.0, **numbers) for numbers in NEWMARK]
@@ -21,9 +21,9 @@ FORMS += [GeneralisedAlpha.with_dissipation(step=1.0, rho=rho) for rho in (0.0, 
 FORMS += [GeneralisedAlpha(step=1.0, beta=0.175, gamma=0.75, alpha_f=0.2)]  # p2 p1 = p3 y decides
 
 
-def factors(numbers: AlphaNumbers, size: float, decay: float = 0.0) -> np.ndarray:
+def factors(parameters: AlphaParameters, size: float, decay: float = 0.0) -> np.ndarray:
     """The roots z of the polynomial in ``generalised_alpha`` for h omega = `size` and h c = `decay`, (3,)."""
-    alpha_m, alpha_f, beta, gamma, _eta = numbers
+    alpha_m, alpha_f, beta, gamma, _eta = parameters
     inertia = np.convolve([1.0 - alpha_m, alpha_m], [1.0, -2.0, 1.0])
     spring = size**2 * np.array([beta, 0.5 + gamma - 2.0 * beta, 0.5 - gamma + beta])
     dashpot = decay * np.array([gamma, 1.0 - 2.0 * gamma, gamma - 1.0])
@@ -96,7 +96,7 @@ def test_flight_multiplies_by_the_roots(form: int) -> None:
     single, times = modes_on_stop(150.0, 9.0, law=SPRING, gap=1.0), method.step * np.arange(1, 12)
     start = State(displacement=np.array([0.1]), velocity=np.array([3.0]))
     motion = simulate(single, start, duration=12e-3, times=times, method=method).displacement[:, 0]
-    polynomial = np.poly(factors(method.numbers, 0.150, 0.009))
+    polynomial = np.poly(factors(method.parameters, 0.150, 0.009))
     residual = np.convolve(motion, polynomial, mode="valid")
     assert np.abs(residual).max() < 1e-13 * np.abs(motion).max()
 
@@ -108,13 +108,13 @@ def test_the_limit_is_where_the_radius_leaves_one(form: int, decay: float) -> No
     method = FORMS[form]
 
     def holds(size: float) -> bool:
-        return bool(stable(method.numbers, np.array(size), np.array(decay * size)))
+        return bool(stable(method.parameters, np.array(size), np.array(decay * size)))
 
     sizes = np.geomspace(1e-2, 1e4, 241)
-    radii = [np.max(np.abs(factors(method.numbers, size, decay * size))) for size in sizes]
+    radii = [np.max(np.abs(factors(method.parameters, size, decay * size))) for size in sizes]
     by_roots = np.array(radii) <= 1 + 1e-7
     by_test = np.array([holds(size) for size in sizes])
-    largest = limit(method.numbers)
+    largest = limit(method.parameters)
     inner = 0 < largest < math.inf
     away = np.abs(np.log(sizes / largest)) > 1e-3 if inner else np.ones(sizes.size, dtype=bool)
     assert np.array_equal(by_roots[away], by_test[away])
@@ -127,15 +127,15 @@ def test_the_limit_is_where_the_radius_leaves_one(form: int, decay: float) -> No
 def test_limits_known_in_closed_form() -> None:
     for beta, gamma in ((0.0, 0.5), (0.1, 0.5), (1 / 6, 0.5), (0.0, 0.7), (0.3, 0.8)):
         method = GeneralisedAlpha.newmark(step=1.0, beta=beta, gamma=gamma)
-        assert limit(method.numbers) == pytest.approx(1 / math.sqrt(gamma / 2 - beta), rel=1e-14)
-    assert limit(GeneralisedAlpha.newmark(step=1.0, beta=0.25, gamma=0.4).numbers) == 0.0
+        assert limit(method.parameters) == pytest.approx(1 / math.sqrt(gamma / 2 - beta), rel=1e-14)
+    assert limit(GeneralisedAlpha.newmark(step=1.0, beta=0.25, gamma=0.4).parameters) == 0.0
     # T. J. R. Hughes, The Finite Element Method (1987), ch. 9, with damping ratio xi
     method, xi = GeneralisedAlpha.newmark(step=1.0, beta=0.1, gamma=0.7), 0.15
     lead, half = 0.7 / 2 - 0.1, xi * (0.7 - 0.5)
     largest = (half + math.sqrt(lead + half**2)) / lead
     for factor, good in ((1 - 1e-9, True), (1 + 1e-9, False)):
         size = factor * largest
-        assert bool(stable(method.numbers, np.array(size), np.array(2 * xi * size))) is good
+        assert bool(stable(method.parameters, np.array(size), np.array(2 * xi * size))) is good
     # in a lasting contact: the stiffness at which the highest frequency of the closed contact is 2/h
     explicit, motion = GeneralisedAlpha.newmark(step=1.9 / OMEGA[2], beta=0.0), spring(3, SPRING).numbers()
     highest = stiffness_at(motion, (2 / explicit.step) ** 2)

@@ -34,29 +34,29 @@ class CubicContact(ContactLaw):
     code: ClassVar[int] = 9
     units: ClassVar[dict[str, str]] = {"stiffness": "N/m^3"}
 @part
-def force(motion, depth, rate):
-    return motion.number0 * depth**3
+def force(numbers, depth, rate):
+    return numbers.number0 * depth**3
 @part
-def stiffness(motion, depth, rate):
-    return 3.0 * motion.number0 * depth**2, 0.0
+def stiffness(numbers, depth, rate):
+    return 3.0 * numbers.number0 * depth**2, 0.0
 @kernel
-def slopes(motion, run, series, weights):
+def slopes(numbers, run, series, weights):
     depth, force = series.scalars[DEPTH], series.scalars[FORCE]
     weights.time[0] = 1.0
     for n in range(ORDER):
-        weights.depth[n] = 3.0 * motion.number0 * np.sum(depth[: n + 1] * depth[n::-1])
-        weights.force[n], weights.first[n] = force[n], force[n] / motion.number0
+        weights.depth[n] = 3.0 * numbers.number0 * np.sum(depth[: n + 1] * depth[n::-1])
+        weights.force[n], weights.first[n] = force[n], force[n] / numbers.number0
     return ORDER
 @kernel
-def step(motion, run, u, v, limit, series):
+def step(numbers, run, u, v, limit, series):
     depth, force, square = series.scalars[DEPTH], series.scalars[FORCE], np.zeros(ORDER)
-    begin(motion, run.clock, u, v, series)
+    begin(numbers, run.clock, u, v, series)
     for n in range(ORDER - 1):
         square[n] = np.sum(depth[: n + 1] * depth[n::-1])
-        force[n] = motion.number0 * np.sum(square[: n + 1] * depth[n::-1])
-        extend(motion, n, force[n], series)
-    h = min(longest_step(motion, 0.5 * motion.number0 * depth[0] ** 4, u, v, series), limit)
-    end = first_polynomial_root(depth, -1.0, h, tip_rounding(motion, u, v))
+        force[n] = numbers.number0 * np.sum(square[: n + 1] * depth[n::-1])
+        extend(numbers, n, force[n], series)
+    h = min(longest_step(numbers, 0.5 * numbers.number0 * depth[0] ** 4, u, v, series), limit)
+    end = first_polynomial_root(depth, -1.0, h, tip_rounding(numbers, u, v))
     return (end, end, OUTSIDE) if end >= 0.0 else (h, h, CONTACT)
 '''
 

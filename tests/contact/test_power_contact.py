@@ -104,5 +104,5 @@ def test_a_motion_has_its_derivatives_and_an_orbit_comes_back(exponent: float, d
         assert np.max(np.abs(near - exact @ direction) / np.abs(exact @ direction).max(axis=0)) < 1e-6
     orbit = orbits.Shooting(oscillator=at_rest, m=5).at_speed(0.3)
     run = simulate(at_rest.with_excess(orbit.excess), orbit.state(), periods=5)
-    assert len(found.run.impacts) >= 1 and run.impacts.approach[0] == pytest.approx(0.3, rel=1e-9)
+    assert len(found.trajectory.impacts) >= 1 and run.impacts.approach[0] == pytest.approx(0.3, rel=1e-9)
     assert run.end.displacement == pytest.approx(orbit.state().displacement, abs=1e-10 * at_rest.stop.gap)

@@ -85,7 +85,7 @@ def test_the_strobe_map_and_a_shift_of_the_law_have_the_derivatives_of_differenc
     oscillator = spring(3, NewtonRestitution(local_restitution=given), drive=(21.5, 1e-4))
     change, start = Change(law=(1.0, 0.0)), np.array([*THROWN.displacement, *THROWN.velocity, 0.0])
     found = motion_derivatives(oscillator, THROWN, [change], periods=1)
-    assert len(found.run.impacts) >= 1
+    assert len(found.trajectory.impacts) >= 1
 
     def end(numbers: np.ndarray) -> np.ndarray:
         state = State(displacement=numbers[:3], velocity=numbers[3:6])

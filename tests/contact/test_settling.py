@@ -7,7 +7,8 @@ from oscillators import equation_1
 from simulated_orbit import beam
 
 from contact import ImpactOscillator, StroboscopicMap
-from contact.orbits import Shooting, fold_of, repeats_after, settle
+from contact.orbits import Shooting, fold_of, settle
+from contact.orbits.observation.repetition import repeats_after
 
 SETTLE_CYCLES = 10_000
 """Drive periods that the letter waits for."""

@@ -66,7 +66,7 @@ def test_recoil_of_a_base_on_which_t_was_measured_moves_nothing(letter_scene, ca
     assert effect_of(letter_scene, 1.05, causes[name]).p10_from == pytest.approx(excess, rel=0.05)
 
 
-@pytest.mark.parametrize(("m", "six"), [(40.70e-3, 0), (40.72e-3, 1), (40.74e-3, 1), (40.76e-3, 0)])
+@pytest.mark.parametrize(("period", "six"), [(40.70e-3, 0), (40.72e-3, 1), (40.74e-3, 1), (40.76e-3, 0)])
 def test_all_six_at_1e_3_need_an_effective_period_of_40_71_to_40_745_ms(letter_scene, period, six):
     scene = letter_scene.replace({"single_mode.free_period_s": period})
     strobed = {m: StroboscopicMap(oscillator=single_mode_at(scene, f)) for f, m in PERIODS.items()}

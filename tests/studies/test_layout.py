@@ -29,6 +29,8 @@ ONCE = {
     r"MaximalFamily[.(]": {
         "physics.descriptions": "its fold",
         "experiment.claims.model": "the whole family, up to its secondary bifurcation",
+        "measurement.noise.places": "the whole family, at every excess of a scan",
+        "measurement.identify.motion.predictions": "starts of a fit, with other restitutions",
         "methods.validation.model": "coefficients, in the units of the source",
     },
     r"orbit_diagram\(": {

@@ -73,7 +73,7 @@ def thrown() -> Reference:
     oscillator = replace(driven, drive=None, stop=replace(driven.stop, gap=0.0))
     start = contact.State(displacement=np.zeros(3), velocity=np.array([0.4, 0.0, 0.0]))
     touch = float(simulate(oscillator, start, duration=0.02).impacts.end[0])
-    size, times = 0.005 / oscillator.model.phi[0], ("probe", "duration", "m")
+    size, times = 0.005 / oscillator.model.phi[0], ("probe", "duration", "period")
     motion = dict(oscillator=oscillator, start=start, size=size, speed=0.4)
     costs = dict(cost_start=start, cost_periods=1, contact_time=touch)
     ends = dict.fromkeys(times, 1.5 * touch)

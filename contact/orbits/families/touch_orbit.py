@@ -125,7 +125,7 @@ class TouchOrbit(ABC):
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PeriodicOrbit(TouchOrbit):
-    """An orbit from shooting.  Its fields are those of `TouchOrbit` and the following.
+    """An orbit from shooting.  Its fields are the fields of `TouchOrbit` and the following.
 
     Parameters
     ----------

@@ -65,7 +65,7 @@ def settled_column(system, amplitudes, reached, most_cycles, tolerance, found, u
     for a in range(amplitudes.size):
         local = at_amplitude(system, amplitudes[a])
         here, mean = local.numbers, local.mean.copy()
-        local.mean[:] = 0.0  # the points are those of the deviations
+        local.mean[:] = 0.0  # the points are deviations
         u[:], v[:] = state[:n] - mean[:n], state[n:] - mean[n:]
         runs[0] = touching[0]
         run.contact_order, run.stretch, run.steps, run.clock = 0, 0, 0, 0.0

@@ -11,7 +11,6 @@ the stop again if
 
 import numpy as np
 
-from beam.parameters import require, require_array, require_whole, require_within
 from contact.errors import NotPeriodic
 from contact.flight.numbers import OMEGA
 from contact.flight.tip import tip_bound
@@ -45,14 +44,8 @@ def repeats_after(points: np.ndarray, impacts: np.ndarray, *, largest_m: int, to
     `points`, shape (n_strobes, n_coordinates), and `impacts`, shape (n_strobes,), must hold at least
     2 * `largest_m` strobes.  `tolerance` is in the unit of the points.
     """
-    stretch = require_whole("largest_m", largest_m, "strobes", low=0)
-    given = require_array("points", points, "any unit", dimensions=2, words="rows of coordinates")
-    rows = len(given)
-    require(rows >= 2 * stretch, f"points has {rows} strobes; it must have {2 * stretch} or more")
-    require(given.shape[1] > 0, f"points has shape {given.shape}; it must have one coordinate or more")
-    counts = require_array("impacts", impacts, "[1]", shape=(rows,)).astype(np.int64)
-    fine = require_within("tolerance", tolerance, "(the unit of the points)", low=0)
-    return int(repetition(given.copy(), counts, rows, stretch, fine))
+    whole = impacts.astype(np.int64)
+    return int(repetition(points.copy(), whole, len(points), np.int64(largest_m), tolerance))
 
 
 def require_orbit(strobed: DifferentiableMap, state, m: int) -> None:

@@ -28,8 +28,8 @@ HEADINGS: dict[tuple[str, ...], Kind] = {
     ("x_m",): "strobe",
     ("x_m", "v_m_per_s"): "strobe",
     ("time_s", "x_m"): "displacement",
-    ("frequency_hz", "m", "excess"): "transitions",
-    ("frequency_hz", "m", "excess", "error"): "transitions",
+    ("frequency_hz", "period", "excess"): "transitions",
+    ("frequency_hz", "period", "excess", "error"): "transitions",
 }
 NOTES = ("frequency_hz", "amplitude_m")
 FEWEST = {"strobe": 4, "displacement": 40, "transitions": 1}  # rows that each kind needs
@@ -186,7 +186,7 @@ def synthetic(
         pairs = zip(there, transitions, strict=True)
         folds = [Shooting(oscillator=one, m=m).fold() for one, (_, m) in pairs]
         found = [[*at, one.excess] for at, one in zip(transitions, folds, strict=True) if one is not None]
-        record = Record(columns=("frequency_hz", "m", "excess"), rows=np.array(found))
+        record = Record(columns=("frequency_hz", "period", "excess"), rows=np.array(found))
     else:
         start, strobes = (
             onset_orbit(StroboscopicMap(oscillator=oscillator), oscillator.excess).end,

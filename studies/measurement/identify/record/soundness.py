@@ -130,7 +130,7 @@ def sound(record: Record, oscillator: ImpactOscillator) -> tuple[Record, ImpactO
 
 def unit_of(found: float, given: float, what: str) -> str | None:
     """Words for the unit in which the record or the given value of `what` would agree with the other one."""
-    base = "seconds" if "m" in what else "metres"
+    base = "seconds" if "period" in what else "metres"
     for unit, number, factor, near, whose in RATIOS:
         for one, other, thing in ((given, found, f"the given {what}"), (found, given, "the record")):
             if what in whose and 1.0 / near < one / (factor * other) < near:
