@@ -24,8 +24,8 @@ Words
     leaves with -`restitution` times its approach speed after the time `delay`, and its `kick` is the jump of
     its velocity over the approach speed.  A *graze* is a touch whose effect is below rounding error.
     *Strobes* are the instants n/f of the drive; a stroboscopic map takes the state from one to the next.  A
-    *stretch* goes from one strobe to the next.  A *period* is a time in seconds; the orbit p_m repeats after m
-    drive periods.  A *run* is a simulated motion under way, as kernels keep it.
+    *stretch* goes from one strobe to the next.  A *period* is a time in seconds; an orbit p_m repeats after
+    m of them.  A *run* is a simulated motion under way, as kernels keep it.
 
 The files: the problem and its answer
     ``drive``           base motion, `HarmonicDrive`

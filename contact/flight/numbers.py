@@ -27,8 +27,8 @@ doubles, omega, 1/omega (or zero), 1/max(omega, c/2) (or the period), S, C, g/om
 ``contact.machine.vector_loops`` use the first four."""
 
 NUMBERS = 12
-"""In a stack, the row after the rows of a stop, which holds `_OWN`.  One more row holds law, numbers, and where
-in the row `Numbers.table` its own table begins, with the numbers of its rows and columns.  It also says
+"""In a stack, the row after the rows of a stop, which holds `_OWN`.  One more row holds law, numbers, and
+where in the row `Numbers.table` its own table begins, with the numbers of its rows and columns.  It also says
 whether stops that are met together act one after the other."""
 STACKED = 14  # rows of the table for each of several stops
 
