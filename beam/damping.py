@@ -115,7 +115,7 @@ class MeasuredDecay:
     Parameters
     ----------
     decay_rate : float
-        c_1 [1/s], not negative: the letter's mu.
+        c_1 [1/s], not negative: the letter's mu. Amplitudes fall as exp(-c_1 t/2).
     others : Damping
         Rule for the other modes.
     scaled : bool

@@ -48,13 +48,14 @@ The files: the problem and its answer
 The folders, from the machine to the orbits
     ``machine``         compiled kernels and where their machine code is kept
     ``flight``          motion between touches in closed form, and the certified search for the next touch
-    ``touch``           motion in contact, one file a law
-    ``engine``          the loop over flights and touches, and the record of a run
+    ``touch``           motion in contact, one file a law; the record of touches
+    ``engine``          the loop over flights and touches, and what a run keeps of them
     ``integrators``     the exact method and the methods with a time step
     ``one_mode``        Eq. (1) of the letter, one mode under Newton's law, fast
     ``sensitivity``     derivatives of a motion with respect to its start and its parameters
     ``maps``            `StroboscopicMap`; `NonlinearMode`, one mode at finite amplitude; `NordmarkMap`, the
-                        letter's map, with its orbits (`MapFamily`), folds and `band` in closed form
+                        letter's map, with its orbits (`MapFamily`), folds and `frequency_band` in
+                        closed form
     ``orbits``          periodic orbits: `MaximalFamily` in closed form under Newton's law, `Shooting` under
                         any law; `settle` and `orbit_diagram` by following the motion; `follow` to folds,
                         period doublings and grazings; `orbit_end`, where an orbit is lost; Lyapunov exponents

@@ -39,7 +39,7 @@ class ContactError(RuntimeError):
 
 
 class UnresolvedCrossing(ContactError):
-    """A stretch of the motion could be proved neither free nor touching."""
+    """A part of the motion could be proved neither free nor touching."""
 
     reason = "a crossing of the stop could be neither excluded nor located"
 

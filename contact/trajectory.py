@@ -130,7 +130,7 @@ class Trajectory:
     time, displacement, velocity : ndarray, shapes (n_times,) and (n_times, n_modes)
         The requested times [s], and the states at them.
     impacts, evaluations : Impacts, int
-        Every touch; and steps, or flights and sampled positions, that the method has made.
+        Every touch, also grazes and stays; and the steps, or flights and sampled positions, of the method.
     """
 
     oscillator: ImpactOscillator

@@ -6,5 +6,5 @@
 `together`     instants at which several stops are met or let go
 `sets`         contacts at several stops, from one instant to the next
 `start`        the start of a run, and the errors of one that fails
-`recorder`     the records of a run, and the `Trajectory` made from them
+`recorder`     strobes and samples of a run, and the `Trajectory`; touches: ``contact.touch.passage``
 """

@@ -6,9 +6,9 @@
 `modal_flow`          the closed-form flow of the modes
 `tip`                 the tip over the stop as a sum over the modes, and its bounds
 `variation`           tangents: derivatives of a motion with respect to its start and its numbers
-`bounds`              stretches of a flight that are proved free of a crossing
+`bounds`              the three proofs for a span of a flight: no crossing, one root, or one peak
 `tip_search`          the tip during a flight: roots and peaks in a bracket, and all peaks
 `crossing`            the first crossing, certified
 `sampled_crossing`    the first crossing that the letter's samples detect
-`polynomial_root`     the first crossing of a polynomial; the positive roots of a quadratic
+`polynomial_root`     the first zero of a polynomial, as of a contact force; the roots of a quadratic
 """

@@ -1,6 +1,6 @@
 """Stretches of a flight proved free of a crossing.
 
-Three proofs.  A signal y(s) is known with its first two derivatives, and a bound M of its third.  A stretch h
+Three proofs.  A signal y(s) is known with its first two derivatives, and a bound M of its third.  A span h
 is settled by one of
 
     max over [0, h] of (y + y' s + y'' s^2/2) + M h^3/6 + R < -margin        no crossing,
@@ -27,7 +27,7 @@ flight, since the difference is an integral of sin(w (t - s)) >= 0 times a funct
     z(t) <= z_1 cos(w (t - t_1)) + (z_1'/w) sin(w (t - t_1)),      |t - t_1| <= pi/w.                  (1)
 
 With m the margin for rounding, the tip stays off the stop wherever z < K = G - d - r - m, and also where
-cos(w (t - t_p)) <= 0 if rho + r + m < G.  Take a stretch of the flight within 3 P/4 of t_p, P the drive
+cos(w (t - t_p)) <= 0 if rho + r + m < G.  Take a span of the flight within 3 P/4 of t_p, P the drive
 period, let |t_1 - t_p| be at most P/4, and |z_1| < K > 0.  Times more than P/2 from t_1, where (1) does not
 hold, then have cos(w (t - t_p)) <= 0, and the bound in (1) stays below |z_1| on one side:
 
@@ -36,7 +36,7 @@ hold, then have cos(w (t - t_p)) <= 0, and the bound in (1) stays below |z_1| on
 The first also holds for any later t_1, the second for any earlier one.  The motion at t_p, or at the peak
 next to it, so settles a flight without a touch; a flight with one is settled up to just before y - R first
 comes within r of the stop.  A flight through a whole period whose t_p lies outside the middle half is taken
-as two stretches of P/2.
+as two spans of P/2.
 """
 
 import math
@@ -52,9 +52,9 @@ SKIP, ROOT, PEAK, NEAR, STALL = 0, 1, 2, 3, 4
 
 @kernel
 def certify(y0, y1, y2, m3, rest, margin, h, h_min):
-    """The longest stretch of h, h/2, h/4, ... that one of the three proofs settles: (proof, stretch).
+    """The longest span of h, h/2, h/4, ... that one of the three proofs settles: (proof, span).
 
-    While some modes are only bounded (`rest` > 0), a stretch with a root or a peak of the others is reported
+    While some modes are only bounded (`rest` > 0), a span with a root or a peak of the others is reported
     as NEAR: there all modes must be sampled.
     """
     while h > h_min:

@@ -1,13 +1,13 @@
 """The first crossing of the stop, certified.
 
-Starting where the tip is off the stop, time is skipped only if a bound proves the stretch free.
+Starting where the tip is off the stop, time is skipped only if a bound proves the span free.
 ``contact.flight.bounds`` has this proof and the two that end a search: one root, one peak.  High modes are
 bounded instead of sampled (``contact.flight.tip``), and more are sampled as the gap closes.  Often a bound of
 the lowest mode alone proves a whole flight free, or the time up to just before a touch, or the rest of a
 period after one.
 
 A graze, |peak| within the rounding bound of y (at most 1e-13 of the gap), is an outcome of its own.  A
-stretch that no proof settles, with h down to rounding, is reported as unresolved and never passed.
+span that no proof settles, with h down to rounding, is reported as unresolved and never passed.
 """
 
 import math
@@ -26,13 +26,13 @@ from contact.machine.compiled import kernel, part
 from contact.machine.vector_loops import LANES
 
 FREE, CROSSES, GRAZES, UNRESOLVED = range(4)
-BELOW = -1  # outcome of a stretch with a peak that stays below the stop: the search goes on
+BELOW = -1  # outcome of a span with a peak that stays below the stop: the search goes on
 HOP, HOP_ORDER = 1.0, 20  # longest hop, in radians of the fastest mode or the drive; order of its series
 GRAZE_TOLERANCE = 1e-13  # largest rounding bound, relative to the gap, with which a peak within it is a graze
 
 
 @kernel
-def stretch_off_wall(numbers, flight, base, contact_order, h, h_min):
+def span_off_wall(numbers, flight, base, contact_order, h, h_min):
     """The longest of h, h/2, ... on which a flight that starts on the wall is proved free; 0 if none is.
 
     `contact_order` derivatives of the tip displacement vanish at the start, from the zeroth on: 1, 2 or 3.
@@ -167,9 +167,9 @@ def sample_tip(numbers, flight, lowest, base, s, sampled):
 
 @part
 def outcome_at_peak(numbers, flight, base, point, step, duration, m3, margin):
-    """Outcome and time of a stretch of length `step` with one peak, and the height of the peak [m].
+    """Outcome and time of a span of length `step` with one peak, and the height of the peak [m].
 
-    The stretch starts at `point`, (time, tip displacement and two derivatives).
+    The span starts at `point`, (time, tip displacement and two derivatives).
     """
     s = point[0]
     peak = find_peak(numbers, flight, base, point, (s, s + step), m3, margin)
@@ -243,7 +243,7 @@ def searched_span(numbers, flight, base, span, contact_order, peak, must, margin
         if s >= duration:
             return FREE, duration
     else:
-        s = stretch_off_wall(numbers, flight, base, contact_order, h, h_min)
+        s = span_off_wall(numbers, flight, base, contact_order, h, h_min)
         if s == 0.0:
             return UNRESOLVED, 0.0
         if s >= duration:
@@ -260,7 +260,7 @@ def searched_span(numbers, flight, base, span, contact_order, peak, must, margin
             # on the wall within rounding although not by construction: the velocity decides
             if y1 > 0.0:
                 return CROSSES, 0.0
-            s = stretch_off_wall(numbers, flight, base, 1 if y1 < 0.0 else 2, h, h_min)
+            s = span_off_wall(numbers, flight, base, 1 if y1 < 0.0 else 2, h, h_min)
             if s == 0.0:
                 return UNRESOLVED, 0.0
             continue

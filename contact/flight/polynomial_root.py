@@ -1,6 +1,6 @@
 """The first crossing of zero by a polynomial, such as a contact force, and the roots of a quadratic.
 
-The three proofs of ``contact.flight.bounds`` settle one stretch after the other.  The bound of the third
+The three proofs of ``contact.flight.bounds`` settle one span after the other.  The bound of the third
 derivative is the sum of the absolute terms at the far end.
 """
 

@@ -15,7 +15,7 @@ from contact.flight.tip import jerk_bound, tip_rounding, tip_state
 from contact.machine.compiled import kernel
 
 SHORTEST = 1e-9
-"""Shortest stretch over the length of a flight, which bounds the number of stretches.  A peak and a valley
+"""Shortest span over the length of a flight, which bounds the number of spans.  A peak and a valley
 that lie closer differ in height by less than rounding."""
 
 
@@ -101,7 +101,7 @@ def peaks_of_flight(numbers, base, u, v, span, rising):
     """All peaks of the tip in a `span` of times of the flight from (u, v) [s], shape (n,).
 
     With |y'''| <= M and r = sqrt(y''^2 + 2 M |y'|), y' keeps its sign for a time (r - |y''|)/M, or
-    (r + |y''|)/M where y'' leads away from zero, and y'' keeps its sign for |y''|/M.  None of these stretches
+    (r + |y''|)/M where y'' leads away from zero, and y'' keeps its sign for |y''|/M.  None of these spans
     holds two peaks.  Set `rising` if the tip may rise at the start; a tip that leaves the stop does not.
     """
     flight = new_flight(numbers)

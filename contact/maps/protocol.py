@@ -23,7 +23,7 @@ Jacobians = tuple[list[tuple[np.ndarray, int]], S]
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class StrobedOrbit(Generic[S]):
-    """A stretch of a strobed motion, and the state at its `end`.
+    """Strobes of a motion one after the other, and the state at the `end`.
 
     Parameters
     ----------

@@ -23,7 +23,7 @@ from contact.simulation import require_state, simulate
 from contact.trajectory import Regime, State
 
 LONGER = (0, 1, 3, 7, 15, 31, 63)
-"""Drive periods by which a stretch that ends in contact is prolonged; a contact lasts less than a period."""
+"""Drive periods by which a motion that ends in contact is prolonged; a contact lasts less than a period."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -8,7 +8,7 @@
 
 Each has at a drive frequency a family of orbits p_m with one impact in m drive periods, which ends at a
 fold (`fold_at`). All but the kicks, which describe orbits and no motion, have a strobed map (`strobed_at`).
-`contact.orbits.born` gives the orbit of that map that is born at grazing.
+`contact.orbits.onset_orbit` gives the orbit of that map that is born at grazing.
 
 The folds come by closed form (map, Eq. (1)), from what each collision of the beam does to mode 1 (two
 parameters) or to all modes (kicks), and by shooting (beam).

@@ -1,6 +1,6 @@
 """The spring: its modes, its calibration, its shape.
 
-`modes`       which modes does the spring have?  Table, shapes, a film of each mode, files for ParaView
+`modes`       which modes does the spring have?  Table, shapes, films of the lowest, files for ParaView
 `calibrate`   which thickness, tape, gap and ball give the four numbers that were measured?
 `shape`       which springs do the words "U shaped" allow, and what do they change?
 

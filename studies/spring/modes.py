@@ -8,10 +8,10 @@ of modes: sway modes do, breathing modes move the ball along the legs at most, a
 Of each mode the impacts see the frequency f = omega/(2 pi) [Hz], the decay rate c [1/s], the tip value phi
 [kg^(-1/2)] and the participation Gamma [kg^(1/2)] in a motion of the base.
 
-Run:     python -m studies modes [--mode 3] [--frames 24]
+Run:     python -m studies modes [--mode 3] [--frames 24] [--filmed 6]
 Writes:  modes.csv (the table), modes.npz (shapes along the strip), modes.png; for ParaView modes.vtu (Warp By
          Vector, choose a mode) and motion.pvd with motion_frames (one period of one mode: press play);
-         mode_1.gif ... (films of the first)
+         mode_1.gif ... (films of the lowest modes, --filmed of them)
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ def modes(
     scene: Scene,
     run: Run,
     *,
-    mode: Annotated[int, "mode to animate"] = 1,
+    mode: Annotated[int, "mode of motion.pvd, for ParaView"] = 1,
     frames: Annotated[int, "frames in one period, an even number", Within(2, MOST_FRAMES)] = 24,
     filmed: Annotated[int, "modes with a film, lowest first"] = FILMED,
 ) -> Mapping[str, object]:

@@ -247,10 +247,10 @@ CONTACT = (
        over="motion"),
     of(closed_forms, lambda c: dict(oscillator=c.oscillator), name="MaximalFamily.from_oscillator",
        over="family"),
-    of(contact.MaximalFamily.from_oscillator, lambda: dict(oscillator=EQ_1, m=3, restitution=0.1),
+    of(contact.MaximalFamily.from_oscillator, lambda: dict(oscillator=EQ_1, m=3, local_restitution=0.1),
        name="MaximalFamily.from_oscillator, refused",
        kind=dict(oscillator=None),
-       value=dict(m=0, restitution=says(-0.1, "restitution is -0.1"),
+       value=dict(m=0, local_restitution=says(-0.1, "restitution is -0.1"),
                   oscillator=each(UNDRIVEN, LOADED, TWO_STOPS))),
     of(lambda m, speed, rho, excess: (
            contact.MapFamily(nordmark(), m).orbit(speed),

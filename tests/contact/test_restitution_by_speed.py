@@ -63,7 +63,7 @@ def test_orbits_are_those_of_the_constant_at_their_speed_but_for_their_multiplie
     free = math.exp(-5.0 * oscillator.period * np.sum(oscillator.model.decay_rate))
 
     def excess(speed: float) -> float:
-        family = MaximalFamily.from_oscillator(oscillator, m=5, restitution=falls(speed))
+        family = MaximalFamily.from_oscillator(oscillator, m=5, local_restitution=falls(speed))
         return family.orbit(speed).excess
 
     family, kicks = (kind(oscillator=oscillator, m=5) for kind in (Shooting, KickFamily))

@@ -82,7 +82,7 @@ def test_many_modes_with_one_tip_value_are_equation_1() -> None:
 def test_another_law_needs_its_restitution() -> None:
     plain = many_modes("three modes")
     soft = replace(plain, stop=Stop(gap=0.012, law=LinearContact(stiffness=1e6)))
-    given = MaximalFamily.from_oscillator(soft, m=3, restitution=0.35)
+    given = MaximalFamily.from_oscillator(soft, m=3, local_restitution=0.35)
     assert given.fold().excess == MaximalFamily(oscillator=plain, m=3).fold().excess
     with pytest.raises(TypeError, match="restitution"):
         MaximalFamily.from_oscillator(soft, m=3)

@@ -15,12 +15,12 @@ from contact import State, simulate
 from studies.measurement.identify import figure
 from studies.measurement.identify.__main__ import answered
 from studies.measurement.identify.fit.descent import Found
+from studies.measurement.identify.fit.diagnosis import contradictions
 from studies.measurement.identify.fit.problem import chance_of
 from studies.measurement.identify.fit.profiles import Profile
 from studies.measurement.identify.fit.result import TOO_SMALL
 from studies.measurement.identify.fit.search import best, fit
 from studies.measurement.identify.record.records import NoAnswer, Record
-from studies.measurement.identify.record.residuals import contradictions
 from studies.measurement.identify.record.soundness import defects, drive_found, unit_of
 from studies.measurement.identify.record.spectrum import harmonics, peaks
 from studies.physics.parameters import with_values

@@ -65,7 +65,7 @@ class AmplitudeCurve(Curve):
         """The excess [1]."""
         return point.orbit.excess
 
-    def stretch(self, x: Array) -> float:
+    def step_factor(self, x: Array) -> float:
         """Beyond `far` times 2 pi f gap the deviations, and so the steps, grow with the approach velocity."""
         return max(1.0, math.exp(x[-1]) / self.far)
 

@@ -98,7 +98,7 @@ def walk(curve: Curve, first: CurvePoint, longest: float, stride: float) -> Iter
             yield leg._replace(ended=ended)
         if ended:
             return
-        here, step = there, min(1.5 * step, longest * curve.stretch(there.x))
+        here, step = there, min(1.5 * step, longest * curve.step_factor(there.x))
     yield Leg([], [], f"the bound of {MOST_STEPS} steps is used up")
 
 

@@ -98,7 +98,7 @@ def fold_of(family: NewtonFamily, near: PeriodicOrbit | None = None) -> Periodic
 
     Where contact is soft, at an excess of some 1e-5 and less, a branch can have several folds.  It can go on
     below the lowest of them until another touch grazes.  A fold below grazing is the orbit of smallest
-    amplitude, since the soft stretch of the branch begins at excess 0 upwards.  Any other fold is looked for
+    amplitude, since the soft part of the branch begins at excess 0 upwards.  Any other fold is looked for
     on the whole branch, as `follow` gives it.
 
     Parameters

@@ -62,7 +62,7 @@ class Curve(ABC):
     def parameter(self, point: CurvePoint) -> float:
         """The parameter at a point."""
 
-    def stretch(self, x: Array) -> float:
+    def step_factor(self, x: Array) -> float:
         """Factor of the longest step at `x`, where the unknowns are large."""
         return 1.0
 

@@ -66,10 +66,10 @@ class NewtonFamily:
         drive, grazing = rows @ np.append(start, speed) + offset, self.oscillator.grazing_amplitude()
         here, at = driven_at(self.oscillator, drive)
         orbit, miss, flow = shoot(Sensitivities(oscillator=here), at, start, self.m, self.impacts, speed)
-        stretch = np.append(self._sizes, speed)
+        scale = np.append(self._sizes, speed)
         closing = flow @ np.vstack([np.eye(n, size), rows]) - np.eye(n, size)
-        slopes = drive @ rows * stretch / (orbit.amplitude * grazing), speed * np.eye(size)[-1]
-        return Iterate(orbit, miss / self._sizes, closing * stretch / self._sizes[:, None], *slopes)
+        slopes = drive @ rows * scale / (orbit.amplitude * grazing), speed * np.eye(size)[-1]
+        return Iterate(orbit, miss / self._sizes, closing * scale / self._sizes[:, None], *slopes)
 
     def _solve(self, x: Array, *, speed: float | None = None, excess: float = 0.0) -> PeriodicOrbit:
         """The orbit next to `x` with its approach speed, or with this excess [1]."""

@@ -207,12 +207,12 @@ class MaximalFamily(SingleImpactFamily):
 
     @classmethod
     def from_oscillator(
-        cls, oscillator: ImpactOscillator, *, m: int, restitution: float | None = None
+        cls, oscillator: ImpactOscillator, *, m: int, local_restitution: float | None = None
     ) -> Self:
-        """The orbits of an oscillator; `restitution` [1] replaces its law."""
-        if restitution is not None:
+        """The orbits of an oscillator; `local_restitution` [1] replaces its law."""
+        if local_restitution is not None:
             require_one_stop(oscillator, "an orbit")
-            law = NewtonRestitution(local_restitution=restitution)
+            law = NewtonRestitution(local_restitution=local_restitution)
             oscillator = replace(oscillator, stop=Stop(gap=oscillator.stop.gap, law=law))
         return cls(oscillator=oscillator, m=m)
 

@@ -21,14 +21,14 @@ RETURNS = 1e-6  # distance over the scale at which a state is back: settled moti
 
 
 @kernel
-def repetition(points, impacts, rows, stretch, tolerance):
-    """The smallest p <= `stretch` with which the last `stretch` strobes repeat, or 0.
+def repetition(points, impacts, rows, strobes, tolerance):
+    """The smallest p <= `strobes` with which the last `strobes` points repeat, or 0.
 
-    `rows` of `points` and `impacts` are in use, at least 2 `stretch`.
+    `rows` of `points` and `impacts` are in use, at least 2 `strobes`.
     """
-    for m in range(1, stretch + 1):
+    for m in range(1, strobes + 1):
         same, i = True, rows
-        while same and i > rows - stretch:
+        while same and i > rows - strobes:
             i -= 1
             same, k = impacts[i] == impacts[i - m], 0
             while same and k < points.shape[1]:

@@ -10,9 +10,10 @@ hysteresis of the letter's transitions, 1e-4 to 1.3e-2, would be lost within a s
 width of the islands near -0.1.
 
 Theory draws over the chart the band edges of the map, and the folds at which p_m orbits end. Bands
-(``contact.band``): frequencies at which p_m is born at grazing in the map. Folds: in closed form for Eq. (1)
-(``contact.MaximalFamily``), by shooting and continuation along the frequency for the beam
-(``contact.orbits``). Only orbits with one impact, and only where no further touch spoils them (certified).
+(``contact.frequency_band``) are the frequencies at which p_m appears at grazing in the map. Folds come in
+closed form for Eq. (1) (``contact.MaximalFamily``), and by shooting and continuation along the frequency for
+the beam (``contact.orbits``). Only orbits with one impact are drawn, and only where no further touch spoils
+them (certified).
 """
 
 from collections.abc import Sequence

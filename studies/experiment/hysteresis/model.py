@@ -12,7 +12,7 @@ Each description differs from the one before in one thing:
 
 Beside them: map_printed (the letter's y-line as stored) and map_measured_kick (the beam's kick for 1 + tau).
 
-With alpha = 2 sqrt(gamma) cos(theta) and gamma = exp(-mu/f) the edges in frequency of ``contact.band`` are
+With alpha = 2 sqrt(gamma) cos(theta) and gamma = exp(-mu/f) the edges of ``contact.frequency_band`` are
 curves in the plane of alpha and gamma, with mu as parameter. The experiment crosses them along its own mu.
 """
 

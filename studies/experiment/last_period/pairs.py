@@ -2,8 +2,8 @@
 
 In the map p_m is born where it exists as rho -> 0-.  This depends on f T alone and ends at f T = 2m/(2m+1).
 In Eq. (1) p_m is born where the motion settles on it after a step from just below grazing to an excess.
-Where that holds on several stretches of T the longest counts.  At an excess of 1e-2, where p_m coexists with
-other motions, the stretch has gaps that a finer grid would find.
+Where that holds on several intervals of T the longest counts.  At an excess of 1e-2, where p_m coexists with
+other motions, the interval has gaps that a finer grid would find.
 """
 
 from collections.abc import Callable, Sequence
@@ -20,7 +20,7 @@ from studies.letter import AMPLITUDE_STABILITY, FREE_PERIOD_ERROR_S, FREE_PERIOD
 from studies.physics.parameters import with_values
 
 FREQUENCY_ERROR_HZ, CYCLES, GRID, HALVINGS = 0.005, 8000, 121, 14
-"""Half the last digit of f; most drive periods to settle; places of a grid; halvings at a stretch's ends."""
+"""Half the last digit of f; most drive periods to settle; places of a grid; halvings at an end."""
 
 EXCESSES = 0.0, AMPLITUDE_STABILITY, 1e-3, 4e-3, 1e-2  # of Eq. (1); 0 is the map
 PRINTED_S = FREE_PERIOD_S - FREE_PERIOD_ERROR_S, FREE_PERIOD_S, FREE_PERIOD_S + FREE_PERIOD_ERROR_S
@@ -51,7 +51,7 @@ def is_born(single: ImpactOscillator, excess: float, frequency: float, period: f
 
 
 def longest(holds: Callable[[float], bool], low: float, high: float) -> tuple[float, float]:
-    """Bisected ends of the longest stretch from `low` to `high` where `holds` is true; none: inf, -inf."""
+    """Bisected ends of the longest interval from `low` to `high` where `holds` is true; none: inf, -inf."""
     grid = np.linspace(low, high, GRID).tolist()
     runs = [list(part) for true, part in groupby(range(GRID), lambda i: holds(grid[i])) if true]
     run = max(runs, key=len, default=None)

@@ -69,7 +69,7 @@ def time_trace(
         HERTZ,
     ] = None,
     film: Annotated[bool, "film one period of the orbit"] = False,
-    frames: Annotated[int, "frames of the film", Within(1, MOST_FRAMES)] = 240,
+    frames: Annotated[int, "frames of the film, with --film", Within(1, MOST_FRAMES)] = 240,
 ) -> Mapping[str, object]:
     """Compute, store and draw."""
     drive_hz = own_frequency(scene, letter.TIME_TRACE_HZ) if frequency is None else frequency
@@ -80,7 +80,7 @@ def time_trace(
     settled = onset_orbit(kind(oscillator=oscillator), excess, most_cycles=most)
     length = ORBIT_PERIODS * settled.m or APERIODIC
     trace = trace_of(oscillator, settled.end, length)
-    # over one period of the orbit: a longer stretch only puts zeros between its lines
+    # over m drive periods: a longer part only puts zeros between the lines
     share = ORBIT_PERIODS if settled.m else 1
     part = trace.readout[: trace.readout.size // share]
     lines_hz, amplitude = lines_of(part, length / share * oscillator.period)
@@ -89,9 +89,9 @@ def time_trace(
     holds = f"time_s from a strobe on [s], tip_m [m] relative to the base, readout_{unit} [{unit}]."
     run.arrays("time_trace", holds, time_s=trace.time, tip_m=trace.tip, **{f"readout_{unit}": trace.readout})
     if scene.stops:
-        run.table("impacts", trace.impacts, "Impacts in the stretch of the figure.", of=computed.Touch)
+        run.table("impacts", trace.impacts, "Impacts in the part that the figure shows.", of=computed.Touch)
     else:
-        collided = "Collisions in the stretch of the figure; one may hold several impacts."
+        collided = "Collisions in the part that the figure shows; one may hold several impacts."
         run.table("collisions", trace.collisions, collided, of=Collision, show=SHOWN, words=WORDS)
     holds = f"Lines of the spectrum: frequency_hz [Hz] and amplitude_{unit} of the read-out [{unit}]."
     run.arrays("spectrum", holds, frequency_hz=lines_hz, **{f"amplitude_{unit}": amplitude})

@@ -1,4 +1,4 @@
-"""A stretch of a motion, and one of its collisions close by: tip past the plate, and the contact force.
+"""A part of a motion, and one of its collisions close by: tip past the plate, and the contact force.
 
     N = k d + c d'  (linear),   N = k d^(3/2) (1 + chi d')  (Hertz: chi = 0),   at depth d [m], rate d' [m/s]
 

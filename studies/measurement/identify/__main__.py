@@ -3,7 +3,7 @@
 Claim: a record of a beam that rattles determines its free period, decay rate, gap, restitution and delay, or
 its contact stiffness, each with an error.  Where it cannot separate two of them, the study says so.
 
-A record is a CSV file of one of three kinds, by its heading (studies.measurement.identify.records; the
+A record is a CSV file of one of three kinds, by its heading (studies.measurement.identify.record.records; the
 example makes one of each):
 
     x_m[,v_m_per_s]                        strobe points of a settled motion, a row a drive period
@@ -56,11 +56,11 @@ from typing import Annotated
 from beam import InvalidValue, Refusal
 from contact import ImpactOscillator
 from studies import letter
+from studies.measurement.identify.fit.diagnosis import contradictions, wanders
 from studies.measurement.identify.fit.result import Fit
 from studies.measurement.identify.fit.search import fit as fitted
 from studies.measurement.identify.motion.displacement import SENSOR
 from studies.measurement.identify.record.records import Kind, NoAnswer, Record, read_record, synthetic
-from studies.measurement.identify.record.residuals import contradictions, wanders
 from studies.measurement.identify.report import as_scene, report, without_errors
 from studies.measurement.next_measurement.figure import tabulated
 from studies.measurement.next_measurement.model import EXCESSES, FREQUENCIES_HZ, THIN, Measurement, Plan

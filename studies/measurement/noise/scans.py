@@ -2,7 +2,7 @@
 
 The observer raises or lowers the amplitude by a step, smoothly over `RAMP` of the waiting that follows, and
 notes p_m if more than half of the periods lie between impacts m periods apart.  p_1 is noted if more than
-half of them lie in stretches without impact longer than `QUIET` periods.
+half of them lie in spans without impact longer than `QUIET` periods.
 
     lost, left         the first amplitude at which p_m, or p_1, is not noted
     slipped, touched   before that: for the first time two impacts are not m periods apart; the first impact

@@ -17,6 +17,7 @@ from beam import Refusal
 from contact import ContactError, ImpactOscillator
 from studies import letter
 from studies.measurement.identify.fit.descent import Found
+from studies.measurement.identify.fit.diagnosis import added, wanders
 from studies.measurement.identify.fit.problem import Problem, chance_of
 from studies.measurement.identify.fit.profiles import Point
 from studies.measurement.identify.fit.result import TOO_SMALL, Fit, determined, judged
@@ -25,7 +26,6 @@ from studies.measurement.identify.motion.predictions import Prediction
 from studies.measurement.identify.motion.starts import predictions_of
 from studies.measurement.identify.motion.unsteady import unsteady_starts
 from studies.measurement.identify.record.records import READ_OUT, Array, NoAnswer, Record, Undetermined
-from studies.measurement.identify.record.residuals import added, wanders
 from studies.measurement.identify.record.soundness import sound
 from studies.measurement.identify.record.spectrum import repetition
 from studies.physics.parameters import parameters_of, require_names, with_values

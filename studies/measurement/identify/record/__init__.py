@@ -4,5 +4,4 @@
 ``spectrum``    lines: harmonics, drive frequencies, repetition
 ``kicks``       a displacement as a settled motion that is kicked: when, how strongly, how damped
 ``soundness``   before a fit: rows, drive and units that cannot be right
-``residuals``   after a fit: hum, drift, filter, a transient or chaos in what is left
 """
