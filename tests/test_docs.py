@@ -127,7 +127,7 @@ def facts_of(name: str, found: dict) -> Iterator[str]:
     if name == "transitions":
         for f in dict.fromkeys(row["frequency_hz"] for row in rows):
             at = [row for row in rows if row["frequency_hz"] == f]
-            yield cells(f"{f:.2f}", f"p{at[-1]['period']}", *(end_in_words(row["excess_down"]) for row in at))
+            yield cells(f"{f:.2f}", f"p{at[-1]['m']}", *(end_in_words(row["excess_down"]) for row in at))
         pairs = zip(rows[2::4], rows[3::4], strict=True)
         off = {a["frequency_hz"]: a["excess_down"] / b["excess_down"] for a, b in pairs}
         assert all(abs(off[f] - 1.0) < 0.1 for f in (21.5, 23.05, 23.4))

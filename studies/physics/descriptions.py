@@ -74,7 +74,7 @@ def strobed_at(name: str, scene: Scene, frequency: float, model: ModalModel | No
 def fold_at(
     name: str, scene: Scene, frequency: float, m: int, model: ModalModel | None = None
 ) -> float | None:
-    """F_m/F_g - 1 at the fold of p_m with one impact, m = `period`; None without one, and for m < 2."""
+    """F_m/F_g - 1 at the fold of p_m with one impact, `m` drive periods; None without one, and for m < 2."""
     if name not in ("two_parameters", "kicks"):
         return fold_excess(strobed_at(name, scene, frequency, model), m)
     beam = beam_at(scene, frequency, model)
@@ -84,7 +84,7 @@ def fold_at(
 
 
 def fold_orbit(oscillator: ImpactOscillator, m: int) -> SingleImpactOrbit | None:
-    """The orbit p_m, m = `period`, at its fold under Newton's law, in closed form; None if there is none."""
+    """The orbit p_m, `m` drive periods, at its fold under Newton's law, in closed form; None if there is none."""
     return MaximalFamily.from_oscillator(oscillator, m=m).fold()
 
 

@@ -75,10 +75,10 @@ def test_a_settled_orbit_has_its_collision_in_every_period():
     spring = Spring.of(read_scene("letter"), FREQUENCY, 20)
     case = spring.case("orbit", "21.5 Hz", hertz_of(LETTER), frequency=21.50)
     row = case.measured()
-    assert row.orbit_period == 4 and row.impacts == 1 and on_orbits([row]) == [row]
+    assert row.orbit_m == 4 and row.impacts == 1 and on_orbits([row]) == [row]
     assert row.restitution == pytest.approx(0.0710, abs=1e-3)
     below = replace(case, oscillator=case.oscillator.with_excess(-0.01)).measured()
-    assert below.orbit_period == 1 and math.isnan(below.kick) and on_orbits([below]) == []
+    assert below.orbit_m == 1 and math.isnan(below.kick) and on_orbits([below]) == []
 
 
 def test_other_tip_masses_keep_the_drive_amplitude_and_are_in_hertz_contact_only():

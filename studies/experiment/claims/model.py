@@ -58,7 +58,7 @@ def has_one_impact(orbit: Orbit) -> bool:
 
 
 def family_at(scene: Scene, frequency: float, m: int) -> MaximalFamily:
-    """The orbits p_m of Eq. (1), m = `period`, at a drive frequency [Hz]."""
+    """The orbits p_m of Eq. (1), `m` drive periods, at a drive frequency [Hz]."""
     return MaximalFamily(oscillator=single_mode_at(scene, frequency), m=m)
 
 

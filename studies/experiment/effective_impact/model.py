@@ -72,7 +72,7 @@ class Approach:
     value: Annotated[float, "value that is varied; the excess on the curve speed, else the ratio of masses"]
     excess: float
     mass_ratio: Annotated[float, "tip mass over the mass of the leaf"]
-    orbit_period: Annotated[int | None, "period; none for a first collision, 0 if not settled"] = None
+    orbit_m: Annotated[int | None, "period; none for a first collision, 0 if not settled"] = None
     restitution: Annotated[float, "restitution tau; none where mode 1 does not come back"] = math.nan
     delay_s: Annotated[float, "time delay [s]; none where mode 1 does not come back"] = math.nan
     kick: Annotated[float, "kick of the mode-1 velocity over the approach velocity"] = math.nan
@@ -106,8 +106,8 @@ class Case:
         """The row with its numbers; ContactError or Refusal if there is no collision."""
         row = self.row
         if row.curve == "orbit":
-            found, period = orbit_collision(self.oscillator)
-            row = replace(row, orbit_period=period)
+            found, m = orbit_collision(self.oscillator)
+            row = replace(row, orbit_m=m)
         else:
             found = first_collision(self.oscillator)
         if found is None:

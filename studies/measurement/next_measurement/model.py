@@ -137,7 +137,7 @@ def errors_of(orbits: Sequence[PeriodicOrbit], plan: Plan) -> Array:
 
 
 class Nodes:
-    """The stable, admissible orbits p_m, m = `period`, at approach speeds above that of the fold."""
+    """The stable, admissible orbits p_m, `m` drive periods, at approach speeds above that of the fold."""
 
     def __init__(self, oscillator: ImpactOscillator, m: int) -> None:
         self.family = KickFamily(oscillator=oscillator, m=m)

@@ -190,7 +190,7 @@ EQ_1 |= {"restitution": "single_mode.restitution"}
 
 
 def band_of(scene: Scene, m: int) -> contact.Band:
-    """The band of p_m of the map with the scene's single mode, m = `period`."""
+    """The band of p_m of the map with the scene's single mode, `m` drive periods."""
     return scene.make(partial(contact.frequency_band, m), EQ_1)
 
 
