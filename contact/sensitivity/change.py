@@ -43,7 +43,8 @@ class Change:
     gap : float
         Derivative of the gap [m].
     law : (float, float)
-        Derivatives of the numbers of the law, in the order of its `units`.  For ``DelayedRestitution`` they
+        Derivatives of the numbers of the law, in the order of its `units`, always two: zero for
+        one that it has not.  For ``DelayedRestitution`` they
         are added to restitution and delay at every speed, and so is that of a `local_restitution`.
     frequency, amplitude : float
         Derivatives of drive frequency [Hz] and base amplitude [m].

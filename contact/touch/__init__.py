@@ -8,23 +8,21 @@
 `impulses`, `sets`, `rests`              several stops: impulses at one instant; contacts followed together;
                                          which points stay at rest
 
-How to add a law, say N = k d^3
-    1. Its file here, ``cubic.py``, with two parts.  The first is a frozen dataclass of its parameters, a
-       ``contact.laws.ContactLaw``: the fields, their `units`, and a `code` that no other law has.  The second
-       is the names listed below.  For a force that is a polynomial in d and d' follow
-       ``contact.touch.linear``: only `force`, `stiffness`, `step` and `slopes` are new.  `step` computes N[n]
-       from d[0] ... d[n] (the cube by two products of series) and calls `extend` for the next order.  A force
-       with a root at d = 0 needs a variable in which it has none: ``contact.touch.power``.
-    2. Its place in `LAWS`.
-    3. Its export in ``contact/__init__.py``.
-    4. A test: the contact of a free mass conserves energy, and agrees with an outside solver.
-To read for this: `ContactLaw`, ``linear``, ``time_series``, and `Series` in ``contact.touch.series``.
+A new law is one file here, a line in `LAWS` and an export (CONTRIBUTING.md, "Add a contact law").  The file
+has a frozen dataclass of the parameters, a ``contact.laws.ContactLaw`` with `@final`, and the names below.
+Its `code` is a number that no other law has: 0 to 3 are taken, and 9 belongs to a test.  For a force that is
+a polynomial in d and d' follow ``linear``: `force`, `stiffness`, `step` and `slopes` are new, and `joins` and
+`coefficient` are left out.  `step` computes N[n] from d[0] ... d[n + 1], by products of series, and calls
+`extend` for the next order.  A force with a root at d = 0 needs a variable in which it has none: ``power``.
+Read for this `ContactLaw`, ``linear``, ``time_series``, `Series` and `product` in ``series``, and `Weights`
+in ``tangent_series``.
 
 What a file offers.  `numbers` is the oscillator, `run` the state of the motion
 (``contact.touch.passage.STATE``), (u, v) are the deviations, and `series` is the workspace of one step.
-    LAW, METHOD                               the law in words; the name of its exact method
+    LAW, METHOD                               the law in words; a name of the exact method, for
+                                              `simulate(method=)`, which laws may share
     REGIMES                                   where the tip can be: ``contact.trajectory.Regime``
-    series_size(motion) -> order, columns     size of the workspace of one step
+    series_size(numbers) -> order, columns     size of the workspace of one step
     strike(numbers, run, u, v, approach) -> regime, rebound, loss, impulse
                                               the immediate effect of a touch: the regime that follows, the
                                               tip velocity after it (NaN if not known yet) [m/s], the energy
@@ -46,8 +44,8 @@ What a file offers.  `numbers` is the oscillator, `run` the state of the motion
                                               numbers as in a stack (``contact.flight.numbers``); 0 if
                                               no other stop can be reached
     joins(numbers) -> bool                    whether contacts of this law are followed together with others
-                                              (``contact.touch.sets``), with the next function and number0 as
-                                              dN/dd at d = 0; not if it is left out
+                                              (``contact.touch.sets``), with the next function; then number0
+                                              must be dN/dd at d = 0; not if it is left out
     coefficient(numbers, n, depth) -> N       order n of the series of N in time, from that of d up to n + 1
     leave(numbers, run, u, v) -> velocity      sets run.contact_order for the flight after the release; the
                                               tip velocity there [m/s]

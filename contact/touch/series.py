@@ -32,7 +32,7 @@ class Series(NamedTuple):
 
     rows: np.ndarray  # coefficients of the modes, row n of order n, shape (order + 1, columns)
     sums: np.ndarray  # shape (columns,)
-    scalars: np.ndarray  # series of single numbers, rows named by each law, shape (8, order + 1)
+    scalars: np.ndarray  # series of single numbers, rows 6, 7 are the law's own, shape (8, order + 1)
     scaled: np.ndarray  # for ``contact.touch.exchange``: P, d' and q of a step of length 1, (3, order + 1)
     places: np.ndarray  # for the same: numbers at places of the step, shape (4, 16)
 

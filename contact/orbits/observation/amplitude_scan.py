@@ -68,7 +68,7 @@ def settled_column(system, amplitudes, reached, most_cycles, tolerance, found, u
         local.mean[:] = 0.0  # the points are deviations
         u[:], v[:] = state[:n] - mean[:n], state[n:] - mean[n:]
         runs[0] = touching[0]
-        run.contact_order, run.strobes, run.steps, run.clock = 0, 0, 0, 0.0
+        run.contact_order, run.stretch, run.steps, run.clock = 0, 0, 0, 0.0
         run.memory0, run.memory1 = -1.0, -1.0
         rows, cycles, m, status = 0, 0, 0, DONE
         if run.regime == OUTSIDE and tip_state(here, 0.0, u, v)[0] > tip_rounding(here, u, v):
