@@ -2,15 +2,13 @@
 
 The machine code is kept (``contact.machine.compiled``).  Otherwise the first run of a study takes half a
 minute longer than the next.  Two processes share the work: kernels of a motion, and kernels of an orbit.  The
-option adds the kernels of `simulate`, with one stop and with several, which the tests need as well.
+option adds the kernels of several stops, which the tests need as well.
 """
 
 import sys
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
 from multiprocessing import get_context
-
-import numpy as np
 
 from beam import single_mode
 from contact.drive import HarmonicDrive
@@ -40,10 +38,6 @@ def _orbits() -> None:
     Shooting(oscillator=_oscillator(HertzContact(stiffness=1e9)), m=5).at_speed(0.1)
 
 
-def _records() -> None:
-    simulate(_oscillator(HertzContact(stiffness=1e9)), periods=2, times=np.array([0.01]))
-
-
 def _several() -> None:
     one = _oscillator(NewtonRestitution(local_restitution=0.1))
     simulate(replace(one, stops=(*one.stops, Stop(gap=0.01, law=one.stop.law, side=-1))), periods=2)
@@ -51,6 +45,6 @@ def _several() -> None:
 
 if __name__ == "__main__":
     with ProcessPoolExecutor(max_workers=2, mp_context=get_context("spawn")) as pool:
-        more = [_several, _records] if "--all" in sys.argv else []
+        more = [_several] if "--all" in sys.argv else []
         for task in [pool.submit(kernels) for kernels in (*more, _orbits, _motions)]:
             task.result()

@@ -122,7 +122,7 @@ def follow_flights(numbers, u, v, run, run_end, space, recorder, samples, sets):
 
 
 @kernel
-def advance(numbers, u, v, runs, last, clock_end, recorder, samples, sets=None):
+def advance(numbers, u, v, runs, last, clock_end, recorder, samples, sets):
     """Carry the deviations (u, v), shape (n_modes,) each, to the time `clock_end` [s] after strobe `last`.
 
     They and `runs`, a record array of ``contact.touch.passage.STATE`` of shape (1,), are overwritten.

@@ -78,7 +78,7 @@ def follow_together(numbers, u, v, run, last, clock_end, space, recorder, sets):
     return status
 
 
-@part
+@kernel
 def follow_several(numbers, u, v, run, last, clock_end, space, recorder, sets):
     """Follow closed contacts, or one under a law that is followed alone; returns the status."""
     seen, own = seen_from(numbers, run.stop), sets.states[run.stop]

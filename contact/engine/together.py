@@ -249,7 +249,7 @@ def lone_impact(numbers, seen, run, u, v, recorder, sets):
     return True
 
 
-@part
+@kernel
 def meet_several(numbers, run, u, v, crosses, recorder, sets):
     """A flight has met the stop of the run, or with `crosses` false grazes it; returns the status."""
     status = GOING

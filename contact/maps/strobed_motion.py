@@ -96,7 +96,7 @@ def any_periods(system, factors, u, v, runs, points, counts):
             factor, run.memory0, run.memory1 = factors[at], -1.0, -1.0
             local = at_amplitude(system, factor)
         recorder = strobes_only(points[at:end], counts[at:end])
-        status = advance(local.numbers, u, v, runs, run.stretch + end - at, 0.0, recorder, None)
+        status = advance(local.numbers, u, v, runs, run.stretch + end - at, 0.0, recorder, None, None)
         for i in range(at, end):
             for k in range(points.shape[1]):
                 points[i, k] = (points[i, k] + local.mean[k]) * system.weight[k]

@@ -146,7 +146,7 @@ def one_mode_periods(table, system, factors, u, v, runs, points, counts):
                     u[0], v[0], run.stretch = un / weight, vn / weight, first + i
                     numbers = system.numbers if factor == 1.0 else with_drive(system.numbers, factor)
                     here = strobes_only(points[i : i + 1], counts[i : i + 1])
-                    status = advance(numbers, u, v, runs, first + i + 1, 0.0, here, None)
+                    status = advance(numbers, u, v, runs, first + i + 1, 0.0, here, None, None)
                     if status != DONE:
                         return status, left
                     impacts, ui, vi = counts[i], weight * u[0], weight * v[0]

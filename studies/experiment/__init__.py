@@ -13,6 +13,6 @@ Behind the figures
     `last_period`       why was p10 the last period that the letter saw?
     `chart`             which period and how many impacts, over the whole plane of frequency and amplitude?
 
-A study is one file or a folder.  In each folder `__main__` has the claim, the options and the verdicts, `model` the physics, and `figure` the
-figures.  A folder with further files names them in its ``__init__``.
+A study is one file or a folder.  In each folder `__main__` has the claim, the options and the verdicts,
+`model` the physics, and `figure` the figures.  A folder with further files names them in its ``__init__``.
 """

@@ -84,7 +84,7 @@ def fold_at(
 
 
 def fold_orbit(oscillator: ImpactOscillator, m: int) -> SingleImpactOrbit | None:
-    """The orbit p_m, `m` drive periods, at its fold under Newton's law, in closed form; None if there is none."""
+    """The orbit p_m at its fold under Newton's law, in closed form; None if there is none."""
     return MaximalFamily.from_oscillator(oscillator, m=m).fold()
 
 

@@ -4,11 +4,12 @@
     def ends(scene: Scene, run: Run, *, points: Annotated[int, "amplitudes"] = 61) -> Mapping[str, object]:
         ...
 
-`needs` names answers of ``physics.least_model`` and their largest errors: the fewest modes are kept with which
-the scene as given meets all of them.  Keyword-only arguments are the options; `--help` prints the docstring of the module; exit codes stand in
-`studies.shell.programs`: 3 for `run.failed` or a ContactError that escapes. Interrupted by Ctrl-C or SIGTERM
-(a KeyboardInterrupt in the study) it keeps what was stored and names the command that goes on. A second
-signal, or one that comes where nothing can be raised (in a callback of the compiler), ends it at once.
+`needs` names answers of ``physics.least_model`` and their largest errors.  The fewest modes are kept with
+which the scene as given meets all of them.  Keyword-only arguments are the options, and `--help` prints the
+docstring of the module.  Exit codes stand in `studies.shell.programs`: 3 for `run.failed` or a ContactError
+that escapes. Interrupted by Ctrl-C or SIGTERM (a KeyboardInterrupt in the study) it keeps what was stored and
+names the command that goes on. A second signal, or one that comes where nothing can be raised (in a callback
+of the compiler), ends it at once.
 """
 
 from __future__ import annotations

@@ -57,7 +57,7 @@ class Period:
         """Status, impacts and approach velocities."""
         counts = np.zeros(1, dtype=np.int64)
         recorder = strobes_only(np.empty((1, 2)), counts)._replace(log=self.log, log_state=self.log_state)
-        status = advance(self.numbers, u, v, runs, int(runs[0]["stretch"]) + 1, 0.0, recorder, None)
+        status = advance(self.numbers, u, v, runs, int(runs[0]["stretch"]) + 1, 0.0, recorder, None, None)
         rows = self.log[: recorder.marks[0]["logged"]]
         return status, int(counts[0]), rows["approach"][rows["kind"] == IMPACT]
 
