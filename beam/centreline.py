@@ -10,8 +10,6 @@ Each piece has constant curvature. Pieces join with a common tangent: k may jump
 strip lies along z.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field
 

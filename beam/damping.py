@@ -13,8 +13,6 @@ Each rule is a class with `decay_rates(modes)` [1/s], shape (n_modes,):
     MeasuredDecay       c_1 as measured; the others from one of the rules above, scaled with it or not
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from typing import Protocol, runtime_checkable
 

@@ -13,8 +13,6 @@ A mass m added at the tip mixes the modes.  With q = V r,
 and phi' = V^T phi, Gamma' = V^T (Gamma + m phi).  T and the decay rates are kept: all omega' are scaled.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

@@ -8,8 +8,6 @@ Every file is written under a temporary name and then renamed, so that it is com
 only existing frames, also if writing was interrupted. Writing needs pyvista but no graphics library.
 """
 
-from __future__ import annotations
-
 import math
 import os
 from collections.abc import Iterable, Iterator, Mapping

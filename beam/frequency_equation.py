@@ -25,8 +25,6 @@ for Natural Frequency and Mode Shape, table 8-1). Over all modes of a clamped be
     sum Gamma_k phi_k = 1,                  sum Gamma_k^2 = m L + M,           sum phi_k^2 = 1/M.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 from functools import partial

@@ -12,8 +12,6 @@ with composition and rolling, its loss factor between 1e-4 and 2e-3. A damping l
 factors of ten with temperature and frequency.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

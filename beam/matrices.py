@@ -13,8 +13,6 @@ energy is no larger has no strain, omega = 0. Sylvester's law of inertia says ho
 the highest one found, so that none is missed.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

@@ -16,8 +16,6 @@ A mode with phi = Gamma = 0 is uncoupled: neither the drive nor the stop can exc
 driven sideways these are the breathing modes: the legs move against each other, the ball does not sideways.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

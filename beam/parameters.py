@@ -9,8 +9,6 @@ Both are a `Refusal`. Any other ValueError or TypeError is a fault of the progra
 hardly be meant, such as one wrong by a factor of 1000, brings a warning `SuspiciousValue` that says why.
 """
 
-from __future__ import annotations
-
 import math
 import re
 import sys

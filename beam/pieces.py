@@ -10,8 +10,6 @@ Coordinates on a piece run from its middle. This keeps the Hermite basis accurat
 of the coordinate.
 """
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass

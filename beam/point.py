@@ -1,7 +1,5 @@
 """A place of a structure, as its modes see it."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Reduction of the modes of a leaf spring, with a rule for their damping, to a modal model."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from .damping import Damping

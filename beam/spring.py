@@ -17,8 +17,6 @@ The base moves by z [m] along the unit vector `drive`. The displacement of the t
 displacement read-out are components along that vector. A light beam reflected off the strip measures theta.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field

@@ -12,8 +12,6 @@ the centreline. The ball is a sphere that touches the strip from the side toward
 Where the drive runs along the strip, the ball lies outside the bend.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from itertools import product

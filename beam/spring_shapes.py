@@ -14,8 +14,6 @@ The straight strip runs along x from x = 0 and is driven along y. A cantilever i
 other end, and carries the tip at its free end.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import replace

@@ -24,8 +24,6 @@ The strains of the shape are accurate to (L/h)^2 eps, and so is the energy summe
 (`PieceMesh.strain_energies`): 1e-12 where the matrix gives 1e-8.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

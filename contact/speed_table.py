@@ -5,8 +5,6 @@ values and its slopes.  Between two columns a function is the cubic with their v
 table it keeps its end values.  Samples get the slopes of their cubic spline.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from functools import partial
 from numbers import Real

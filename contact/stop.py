@@ -1,7 +1,5 @@
 """The stop: a wall that rides on the base, at a distance `gap` from a point of the resting spring."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

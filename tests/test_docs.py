@@ -3,8 +3,6 @@
 The long form runs each study in full; results that are stored already can be named by GRAZING_SPRING_RESULTS.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import re

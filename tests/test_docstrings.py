@@ -1,7 +1,5 @@
 """What `help` shows: fields and parameters of public names explained; ruff sees that there are docstrings."""
 
-from __future__ import annotations
-
 import dataclasses
 import inspect
 import re

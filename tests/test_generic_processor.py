@@ -1,7 +1,5 @@
 """A run on the instructions that every processor has is refused where numpy or numba keep others."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

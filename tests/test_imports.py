@@ -1,7 +1,5 @@
 """Who imports whom, what importing costs, what is public, what is shipped."""
 
-from __future__ import annotations
-
 import ast
 import importlib
 import json

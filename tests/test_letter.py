@@ -1,7 +1,5 @@
 """The verdict on each of the letter's points, one test a point, from the small form of its study."""
 
-from __future__ import annotations
-
 import json
 import subprocess
 import sys

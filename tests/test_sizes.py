@@ -1,7 +1,5 @@
 """Sizes, by which one sees that each idea stands once: files and functions; ruff counts parameters."""
 
-from __future__ import annotations
-
 import ast
 from collections.abc import Iterator
 from pathlib import Path

@@ -5,8 +5,6 @@ and values that make it wrong.  Besides, every plain number of every right call 
 `NO_NUMBERS`.  A public name without three wrong values fails `test_every_public_name_has_wrong_values`.
 """
 
-from __future__ import annotations
-
 import dataclasses
 import re
 import warnings

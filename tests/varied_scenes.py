@@ -5,8 +5,6 @@ program. `varied.csv` in the folder `--out` keeps the exit codes and last senten
 from there. All of it takes about an hour on two cores.
 """
 
-from __future__ import annotations
-
 import argparse
 import csv
 import os

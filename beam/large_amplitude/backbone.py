@@ -23,8 +23,6 @@ One mode with (1 + a x^2) x'' + a x x'^2 + W^2 (x + b x^3) = 0 has kappa/L^2 = (
 are equal for b = (8/3) elastic/L^2 and a = -4 inertial/L^2.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import dropwhile, takewhile

@@ -14,8 +14,6 @@ i k w + lambda replaces i k w (G. W. Hill's method). The effective period is tha
 under the same drive whose deviations have the same frequency as in mode 1.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from functools import cached_property
 

@@ -23,8 +23,6 @@ v and phi are cubic Hermite. Under chi = 0 a cubic v needs a linear phi, which a
 are stiff edgewise and tight arcs therefore do not lock.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

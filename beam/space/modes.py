@@ -16,8 +16,6 @@ Only the tip couples the motion in the plane to that out of it; on the plane of 
 plane) it does not.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

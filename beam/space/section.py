@@ -32,8 +32,6 @@ warping as a strip). For h = 0 the section is the strip. J of `channel` is then 
 the part 0.63 t/b, since it neglects the two edges of the strip.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from typing import ClassVar
 

@@ -6,8 +6,6 @@ hold phi'. The tip is a body of mass M [kg] with the rotary inertia J [kg m^2] a
 to one section at the point c [m] from its centroid.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from ..centreline import Centreline

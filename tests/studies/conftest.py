@@ -1,7 +1,5 @@
 """Studies as a person runs them, in this process."""
 
-from __future__ import annotations
-
 import csv
 import importlib
 import json

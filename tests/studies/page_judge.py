@@ -1,7 +1,5 @@
 """What a reader may find on a page of results."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

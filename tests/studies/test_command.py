@@ -1,7 +1,5 @@
 """The command of the studies: wrong use, what an import changes, and what a signal leaves."""
 
-from __future__ import annotations
-
 import json
 import os
 import signal

@@ -1,7 +1,5 @@
 """The small form of every study leaves a summary, a table and a figure."""
 
-from __future__ import annotations
-
 import json
 import re
 from pathlib import Path

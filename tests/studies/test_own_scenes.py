@@ -1,7 +1,5 @@
 """The scenes delivered besides the letter's: read, built, driven; and what they claim of themselves."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from types import SimpleNamespace

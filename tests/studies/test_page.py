@@ -1,7 +1,5 @@
 """The page: what is stored is on it, what is missing or broken is named, nothing is loaded from elsewhere."""
 
-from __future__ import annotations
-
 import json
 import re
 import shutil

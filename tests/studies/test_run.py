@@ -1,7 +1,5 @@
 """A study as a program: options, exit codes, streams, results, and what an interruption leaves."""
 
-from __future__ import annotations
-
 import csv
 import importlib
 import json

@@ -1,7 +1,5 @@
 """Scenes: every key with unit and provenance, one sentence for whatever is wrong, nothing in between."""
 
-from __future__ import annotations
-
 import math
 import pickle
 import tomllib

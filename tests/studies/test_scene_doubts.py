@@ -1,7 +1,5 @@
 """Values of a scene that are legal and can hardly be meant: they are taken with a warning."""
 
-from __future__ import annotations
-
 import pytest
 
 from beam import SuspiciousValue

@@ -1,7 +1,5 @@
 """Sweeps: stored as they are made, gone on with after any end, the same on every executor."""
 
-from __future__ import annotations
-
 import json
 import os
 import random

@@ -16,8 +16,6 @@ there: see also arXiv:2510.16218.  The derivatives are the exact tangents of the
 converges quadratically.  The Floquet multipliers are the eigenvalues of dF_(u,v)/d(u, v) at fixed drive.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
