@@ -22,7 +22,7 @@ site: $(READY)
 # `python -m pytest` puts this folder first on the path, so that what is tested is what lies here.
 test: $(READY)
 	@$(ONE_THREAD) $(BIN)/python -m contact.warm_up --all
-	$(ONE_THREAD) $(BIN)/python -m pytest -n 2 -rs -m "not slow"
+	$(ONE_THREAD) $(BIN)/python -m pytest -n 2 --dist worksteal -rs -m "not slow"
 
 test-slow: $(READY)
 	$(ONE_THREAD) $(BIN)/python -m pytest -n 2 --dist loadgroup -rs -m slow
@@ -38,7 +38,7 @@ test-generic: $(READY)
 	export NPY_DISABLE_CPU_FEATURES="$$($(BIN)/python -c '$(SIMD)')" && \
 	export NUMBA_CPU_NAME=generic NUMBA_CPU_FEATURES= OPENBLAS_CORETYPE=Prescott $(ONE_THREAD) && \
 	$(BIN)/python -m contact.warm_up --all && \
-	$(BIN)/python -m pytest -n 2 -rs -m "not slow" $(NUMBERS)
+	$(BIN)/python -m pytest -n 2 --dist worksteal -rs -m "not slow" $(NUMBERS)
 
 lint: $(READY)
 	$(BIN)/python -m ruff check beam contact studies tests
