@@ -46,7 +46,7 @@ BREAKDOWN = MappingProxyType(
 
 
 @dataclass(frozen=True)
-class Point:
+class Statement:
     """One thing that the letter says: where, its words or close to them, its number, the study that judges
     it."""
 
@@ -116,21 +116,21 @@ sampled | work_precision | note [11] | no number
 )
 
 
-def _points(table: str) -> dict[str, Point]:
+def _points(table: str) -> dict[str, Statement]:
     """The points of a table whose lines are, in turn, `key | study | where | printed` and what the letter
     says."""
     lines = table.splitlines()
     found = {}
     for line, says in zip(lines[::2], lines[1::2], strict=True):
         key, study, where, printed = line.split(" | ")
-        found[key] = Point(where, says.strip(), printed, study)
+        found[key] = Statement(where, says.strip(), printed, study)
     return found
 
 
-POINTS: Mapping[str, Point] = MappingProxyType(
+POINTS: Mapping[str, Statement] = MappingProxyType(
     _points(_BEFORE)
     | {
-        f"p{m}": Point("Fig. 2", f"At {f:.2f} Hz p1 goes over into p{m}.", f"p{m}", "transitions")
+        f"p{m}": Statement("Fig. 2", f"At {f:.2f} Hz p1 goes over into p{m}.", f"p{m}", "transitions")
         for f, m in PERIODS.items()
     }
     | _points(_AFTER)

@@ -34,7 +34,7 @@ from studies.methods.work_precision.methods import EXACT, SAMPLED, sweeps_for
 from studies.methods.work_precision.model import (
     REPEATS,
     SLOWEST,
-    Point,
+    Measured,
     cheapest,
     orbit_rows,
     reference_of,
@@ -68,12 +68,12 @@ def work_precision(scene: Scene, run: Run) -> Mapping[str, object]:
     references = [reference_of(one) for one in run.track(problems, "references")]
     jobs = [(one, sweep) for one in references for sweep in sweeps_for(one.problem, quick=run.quick)]
     slowest, repeats = (SLOWEST_QUICK, 3) if run.quick else (SLOWEST, REPEATS)
-    rows: list[Point] = []
+    rows: list[Measured] = []
     for reference, sweep in run.track(jobs, "sweeps of errors and costs"):  # nothing runs beside a timing
         rows += rows_of(reference, sweep, slowest=slowest, repeats=repeats)
     reference, periodic = orbit_rows(quick=run.quick, repeats=repeats)
     references, rows = [*references, reference], [*rows, *periodic]
-    run.table("rows", rows, "Every method at every setting.", of=Point, show=())
+    run.table("rows", rows, "Every method at every setting.", of=Measured, show=())
     best = cheapest_of(rows)
     run.table("cheapest", best, "The cheapest setting of each method for two errors.", of=Cheapest)
     spent = costs.costs(scene.replace({"contact.law": "hertz"}), run)
@@ -111,7 +111,7 @@ def work_precision(scene: Scene, run: Run) -> Mapping[str, object]:
     }
 
 
-def cheapest_of(rows: Sequence[Point]) -> list[Cheapest]:
+def cheapest_of(rows: Sequence[Measured]) -> list[Cheapest]:
     """The cheapest setting of each method for both errors."""
     found = []
     for problem, method in dict.fromkeys((row.problem, row.method) for row in rows):
@@ -125,7 +125,7 @@ def cheapest_of(rows: Sequence[Point]) -> list[Cheapest]:
     return found
 
 
-def sentences(rows: Sequence[Point]) -> Iterator[str]:
+def sentences(rows: Sequence[Measured]) -> Iterator[str]:
     """What the beam with Hertz's contact says of the methods."""
     here = [row for row in rows if row.problem == HERTZ and row.error is not None]
     known = [(row, row.time_per_period_us) for row in here if row.time_per_period_us is not None]
@@ -140,7 +140,7 @@ def sentences(rows: Sequence[Point]) -> Iterator[str]:
         yield f"Flights that are sampled too rarely miss {100.0 * missed:.0f} % of the shallow touches."
 
 
-def judge(run: Run, rows: Sequence[Point]) -> None:
+def judge(run: Run, rows: Sequence[Measured]) -> None:
     """Verdict on note [11]: the crossings of Eq. (1) that the letter's scheme misses."""
     scheme = [row for row in rows if row.problem == EQ_1 and row.method == SAMPLED]
     missed = [row.missed for row in scheme if row.missed is not None]

@@ -9,7 +9,7 @@ from matplotlib.artist import Artist
 from matplotlib.figure import Figure
 
 from studies.methods.work_precision.methods import EXACT, OUTSIDE, PERIODIC, STEPPED
-from studies.methods.work_precision.model import Point, Reference
+from studies.methods.work_precision.model import Measured, Reference
 from studies.shell import plotting
 from studies.shell.plotting import MARKERS, PALETTE
 
@@ -18,7 +18,7 @@ FLOOR = 1e-17  # errors that vanish are drawn here
 COLOURS = (*PALETTE[1:7], "0.45")  # seven against eight markers: no two methods of a family look alike
 
 
-def styles_of(rows: Sequence[Point]) -> dict[str, dict[str, Any]]:
+def styles_of(rows: Sequence[Measured]) -> dict[str, dict[str, Any]]:
     """Colour, marker and line of each method, the same in every panel, by family."""
     found: dict[str, dict[str, Any]] = {
         row.method: {"marker": "*", "color": PALETTE[0], "linestyle": "none", "markersize": 9, "zorder": 5}
@@ -41,7 +41,7 @@ def styles_of(rows: Sequence[Point]) -> dict[str, dict[str, Any]]:
 
 
 @plotting.in_house_style
-def draw_errors(rows: Sequence[Point], references: Sequence[Reference]) -> Figure:
+def draw_errors(rows: Sequence[Measured], references: Sequence[Reference]) -> Figure:
     """Error of mode 1 against time, one panel a problem; the legend is in the order of families."""
     figure, axes = plotting.new_figure(2, 2, width=plotting.PAGE, height=0.185, squeeze=False)
     styles, drawn = styles_of(rows), dict[str, Artist]()

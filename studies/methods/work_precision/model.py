@@ -78,7 +78,7 @@ RINGING = 2e-3
 
 
 @dataclass(frozen=True, kw_only=True)
-class Point:
+class Measured:
     """A method at a setting: its error and its cost on a problem, or why there is none."""
 
     problem: Annotated[str, "problem"]
@@ -168,12 +168,12 @@ def cost_of(problem: Problem, method: Integrator, repeats: int = REPEATS) -> flo
 
 def rows_of(
     reference: Reference, sweep: Sweep, *, slowest: float = SLOWEST, repeats: int = REPEATS
-) -> list[Point]:
+) -> list[Measured]:
     """One row for each setting of a sweep; settings that would take longer than `slowest` [s] are not run."""
     rows, expected = [], 0.0
     for setting in sweep.settings:
         method = setting.method
-        row = Point(
+        row = Measured(
             problem=reference.problem.name,
             method=sweep.label,
             family=sweep.family,
@@ -201,13 +201,13 @@ def rows_of(
     return rows
 
 
-def orbit_rows(*, quick: bool, repeats: int) -> tuple[Reference, list[Point]]:
+def orbit_rows(*, quick: bool, repeats: int) -> tuple[Reference, list[Measured]]:
     """The reference of the two masses; rows of harmonic balance, shooting and settling."""
     problem = replace(driven_problem("two masses", "two masses, an orbit", two_masses(0.635)), unit="orbit")
     o, settled, start = problem.oscillator, problem.cost_start, simulate(problem.oscillator, periods=40).end
     reference = reference_of(replace(problem, start=settled, probe=problem.period))
     found = reference.error_of(settled.displacement[0], settled.velocity[0])  # what it fails to close by
-    reference, rows = replace(reference, own_error=found), list[Point]()
+    reference, rows = replace(reference, own_error=found), list[Measured]()
 
     def balance(order: int) -> State:
         found = balanced(o, order, SAMPLES[order], start)
@@ -222,7 +222,7 @@ def orbit_rows(*, quick: bool, repeats: int) -> tuple[Reference, list[Point]]:
     jobs = [("harmonic balance", f"order {n}", partial(balance, n)) for n in SAMPLES if n < 81 or not quick]
     jobs += [("settling", f"{n} periods", partial(later, n)) for n in SETTLING]
     for label, text, work in [*jobs, ("shooting", "1e-12", partial(shot))]:
-        row = Point(
+        row = Measured(
             problem=problem.name,
             method=label,
             family=PERIODIC,
@@ -239,7 +239,7 @@ def orbit_rows(*, quick: bool, repeats: int) -> tuple[Reference, list[Point]]:
     return reference, rows
 
 
-def cheapest(rows: Sequence[Point], target: float) -> Point | None:
+def cheapest(rows: Sequence[Measured], target: float) -> Measured | None:
     """The row of least cost with an error of at most `target`; None if there is none."""
     known = [row for row in rows if row.error is not None and row.error <= target]
     return min(known, key=lambda row: (row.time_per_period_us, row.error), default=None)

@@ -197,7 +197,7 @@ class Judged(NamedTuple):
     """A point of the letter, its verdict, and the place on the page that shows it."""
 
     key: str
-    point: letter.Point
+    point: letter.Statement
     verdict: str
     found: str
     note: str

@@ -40,7 +40,7 @@ class Profile:
 
 
 @dataclass(frozen=True, eq=False)
-class Point:
+class Conditional:
     """A parameter held `away` standard errors from the best: the `rise` of chi^2 in the noise's variance,
     the `values` of all unknowns, their change `along` one more standard error, and the prediction there."""
 
@@ -67,7 +67,7 @@ class Walk:
         self.i, self.chi2 = problem.names.index(name), float(np.sum(problem.residuals(unknowns) ** 2))
         self.best = self._point(0.0, 0.0, problem.values(unknowns), problem.prediction)
 
-    def _point(self, away: float, rise: float, values: Array, prediction: Prediction) -> Point:
+    def _point(self, away: float, rise: float, values: Array, prediction: Prediction) -> Conditional:
         """A point with the direction in which chi^2 rises least as the parameter moves on."""
         problem = self.problem.of(prediction)
         unknowns = problem.unknowns_of(values)
@@ -77,9 +77,9 @@ class Walk:
         others = np.delete(rows / sizes, self.i, axis=1)
         follow = np.linalg.lstsq(others, -rows[:, self.i], rcond=None)[0] / np.delete(sizes, self.i)
         each = values[self.i] / self.best.values[self.i] if away and self.problem.log[self.i] else 1.0
-        return Point(away, rise, values, np.insert(follow, self.i, 1.0) * self.error * each, prediction)
+        return Conditional(away, rise, values, np.insert(follow, self.i, 1.0) * self.error * each, prediction)
 
-    def moved(self, point: Point, step: float, last: Point | None = None) -> Array:
+    def moved(self, point: Conditional, step: float, last: Conditional | None = None) -> Array:
         """All values so many standard errors on: along a point's direction, on the parabola through the last;
         logarithms where they are fitted."""
         found, log = point.values + step * point.along, self.problem.log
@@ -109,7 +109,7 @@ class Walk:
         return not all(abs(rise / reach**2 - 1.0) < BENT for rise in rises)
 
     @through_any_value()
-    def held(self, point: Point, step: float, last: Point | None) -> Point | None:
+    def held(self, point: Conditional, step: float, last: Conditional | None) -> Conditional | None:
         """The fit with the parameter a step beyond a point; None if it does not settle."""
         values, problem = self.moved(point, step, last), self.problem
         prediction, value = point.prediction.again(), float(values[self.i])
@@ -128,9 +128,9 @@ class Walk:
         except (ContactError, Refusal):
             return None
 
-    def side(self, reach: float) -> tuple[list[Point], float]:
+    def side(self, reach: float) -> tuple[list[Conditional], float]:
         """Points from the best outwards to the side of the sign of `reach`, and where the interval ends."""
-        low, last, high, points = self.best, None, None, list[Point]()
+        low, last, high, points = self.best, None, None, list[Conditional]()
         step, most = reach, abs(reach)
         for _ in range(REFITS):
             point = self.held(low, step, last)
@@ -154,13 +154,13 @@ class Walk:
         edge = RANGES.get(self.name, (0.0, math.inf))[reach > 0.0]  # no r inside it is as large as the reach
         return points, edge if high is None else self._end(low, high, most)
 
-    def _end(self, low: Point, high: Point, reach: float) -> float:
+    def _end(self, low: Conditional, high: Conditional, reach: float) -> float:
         """Where r is the reach, by the line through two points."""
         ends = low.values[self.i], high.values[self.i]
         return float(ends[0] + (ends[1] - ends[0]) * (reach - low.r) / (high.r - low.r))
 
 
-def rows_of(walk: Walk, points: Sequence[Point], other: str) -> list[Profile]:
+def rows_of(walk: Walk, points: Sequence[Conditional], other: str) -> list[Profile]:
     """The points of a walk, the parameter rising."""
     k = walk.problem.names.index(other)
     points = sorted([walk.best, *points], key=lambda point: point.away)

@@ -19,7 +19,7 @@ from studies import letter
 from studies.measurement.identify.fit.descent import Found
 from studies.measurement.identify.fit.diagnosis import added, wanders
 from studies.measurement.identify.fit.problem import Problem, chance_of
-from studies.measurement.identify.fit.profiles import Point
+from studies.measurement.identify.fit.profiles import Conditional
 from studies.measurement.identify.fit.result import TOO_SMALL, Fit, determined, judged
 from studies.measurement.identify.motion.linear import Linear
 from studies.measurement.identify.motion.predictions import Prediction
@@ -129,7 +129,7 @@ def _displacement(
     return found
 
 
-def _walked(found: Fit) -> tuple[dict[str, tuple[float, float]], Point | None]:
+def _walked(found: Fit) -> tuple[dict[str, tuple[float, float]], Conditional | None]:
     """Intervals by profiles where chi^2 is no parabola, and a point that is better than the fit, if there is
     one."""
     walks = dict[str, tuple[float, float]]()
