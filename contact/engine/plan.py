@@ -14,7 +14,7 @@ MOST_STORED = 2.0**28  # largest number of values in the strobes of one run: 2 G
 
 @dataclass(frozen=True, eq=False)
 class Plan:
-    """What a simulation has to do: its start and end, and the times at which its states are wanted."""
+    """Start, end and sample times of a simulation."""
 
     start: State
     length: float  # duration [s]
