@@ -14,13 +14,11 @@ Its `code` is a number that no other law has: 0 to 3 are taken, and 9 belongs to
 a polynomial in d and d' follow ``linear``: `force`, `stiffness`, `step` and `slopes` are new, and `joins` and
 `coefficient` are left out.  `step` computes N[n] from d[0] ... d[n + 1], by products of series, and calls
 `extend` for the next order.  A force with a root at d = 0 needs a variable in which it has none: ``power``.
-Read for this `ContactLaw`, ``linear``, ``time_series``, `Series` and `product` in ``series``, and `Weights`
-in ``tangent_series``.
+Read `ContactLaw`, ``time_series``, `Series` and `product` in ``series``, `Weights` in ``tangent_series``.
 
 What a file offers.  `numbers` is the oscillator, `run` the state of the motion
 (``contact.touch.passage.STATE``), (u, v) are the deviations, and `series` is the workspace of one step.
-    LAW, METHOD                               the law in words; a name of the exact method, for
-                                              `simulate(method=)`, which laws may share
+    LAW, METHOD                               the law in words; a name for `method=`, which laws may share
     REGIMES                                   where the tip can be: ``contact.trajectory.Regime``
     series_size(numbers) -> order, columns     size of the workspace of one step
     strike(numbers, run, u, v, approach) -> regime, rebound, loss, impulse

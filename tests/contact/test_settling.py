@@ -84,3 +84,17 @@ def test_the_motion_without_impacts_is_settled_by_its_energy():
     assert (found.m, found.impacts, found.cycles) == (1, 0, 128)
     steady = strobed.steady()
     assert np.allclose(found.end.displacement, steady.displacement, rtol=0, atol=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("points", "impacts", "words"),
+    [
+        (np.zeros(16), np.zeros(16), "points has shape"),
+        (np.zeros((16, 0)), np.zeros(16), "one coordinate or more"),
+        (np.zeros((15, 1)), np.zeros(15), "points has 15 strobes; it must have 16"),
+        (np.zeros((16, 1)), np.zeros(1), "impacts has shape"),
+    ],
+)
+def test_points_of_a_map_of_ones_own_are_looked_at_before_the_kernel_reads_them(points, impacts, words):
+    with pytest.raises(ValueError, match=words):
+        repeats_after(points, impacts, largest_m=8, tolerance=1e-9)

@@ -11,6 +11,7 @@ the stop again if
 
 import numpy as np
 
+from beam.parameters import require, require_array
 from contact.errors import NotPeriodic
 from contact.flight.numbers import OMEGA
 from contact.flight.tip import tip_bound
@@ -44,8 +45,12 @@ def repeats_after(points: np.ndarray, impacts: np.ndarray, *, largest_m: int, to
     `points`, shape (n_strobes, n_coordinates), and `impacts`, shape (n_strobes,), must hold at least
     2 * `largest_m` strobes.  `tolerance` is in the unit of the points.
     """
-    whole = impacts.astype(np.int64)
-    return int(repetition(points.copy(), whole, len(points), np.int64(largest_m), tolerance))
+    given = require_array("points", points, "any unit", dimensions=2, words="rows of coordinates")
+    rows, least = len(given), 2 * largest_m
+    require(rows >= least, f"points has {rows} strobes; it must have {least} or more")
+    require(given.shape[1] > 0, f"points has shape {given.shape}; it must have one coordinate or more")
+    counts = require_array("impacts", impacts, "[1]", shape=(rows,)).astype(np.int64)
+    return int(repetition(given.copy(), counts, rows, np.int64(largest_m), tolerance))
 
 
 def require_orbit(strobed: DifferentiableMap, state, m: int) -> None:

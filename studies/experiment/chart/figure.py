@@ -93,7 +93,7 @@ def draw(
         len(PERIODS) - 1: f"{len(PERIODS) - 1} to 64"
     }
     failed = bool(np.any(cells["m"] < 0))
-    _key(axes[0, 1], "m", {texts[m]: PERIODS[m] for m in sorted(seen)}, failed)
+    _key(axes[0, 1], "period m", {texts[m]: PERIODS[m] for m in sorted(seen)}, failed)
     seen = set(np.searchsorted(list(CLASSES), cells["impacts"][hit], side="right").tolist())
     _key(axes[1, 1], "impacts", {names[k]: IMPACTS[k] for k in sorted(seen)}, failed)
     plotting.legend_below(figure, axes.flat, 4)
