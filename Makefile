@@ -1,5 +1,5 @@
 # make study   the main study on the letter's scene
-# make site    the documentation, with the page of what is stored: results/site/index.html
+# make site    the documentation, with a chapter of what is stored: results/site/index.html
 # make test    the tests, but for the long forms of some; each names at its end what it skipped and why
 # make test-slow  these long forms
 # make test-generic  what computes numbers, on the instructions that every processor has
@@ -17,7 +17,10 @@ study: $(READY)
 	$(BIN)/python -m studies
 
 site: $(READY)
-	$(BIN)/python -m studies report --site
+	$(ONE_THREAD) $(BIN)/python -m sphinx -W --keep-going -q -j 2 -b html \
+		-d docs/made/doctrees docs results/site
+	@rm -f results/site/_static/scripts/*.map results/site/_static/styles/*.map
+	@echo "the documentation: results/site/index.html"
 
 # `python -m pytest` puts this folder first on the path, so that what is tested is what lies here.
 test: $(READY)
@@ -50,7 +53,7 @@ $(READY): pyproject.toml constraints.txt
 		{ echo "grazing-spring needs Python 3.11 or later: name one with make PYTHON=/path/to/python3" >&2; exit 1; }
 	@echo "installing into .venv (a few minutes the first time)"
 	@$(PYTHON) -m venv .venv
-	@$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[test]'
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[test,docs]'
 	@echo "compiling the kernels (about a minute, once)"
 	@$(ONE_THREAD) $(BIN)/python -m contact.warm_up
 	@touch $@

@@ -45,8 +45,10 @@ def test_the_readme_is_short_and_every_link_leads_somewhere():
     prose = re.sub(r"```.*?```", "", TEXTS["README"], flags=re.DOTALL)
     assert len(TEXTS["README"].splitlines()) <= 125 and len(re.findall(r"(?<![\w.])\d[\d.]*", prose)) <= 80
     for name, text in TEXTS.items():
-        for target in re.findall(r"\]\((?!https:)([^)#]*)\)", text):
-            assert ((ROOT if name == "README" else ROOT / "docs") / target).exists(), target
+        for target in re.findall(r"\]\((?!https:)([^)#]*)", text):
+            source = re.sub(r"^examples/index.rst", "gallery/GALLERY_HEADER.rst", target)
+            source = re.sub(r"^examples/(\w+).rst", r"gallery/\1.py", source)
+            assert ((ROOT if name == "README" else ROOT / "docs") / source).exists(), target
 
 
 def test_every_study_named_exists_and_every_study_is_named():

@@ -16,14 +16,13 @@ from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
+from public_names import DOORS
 
 from studies.shell.programs import CHAPTERS, chapter, needs
 
 ROOT = Path(__file__).resolve().parent.parent
 PACKAGES = ("beam", "contact", "studies")
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
-DOORS = ("beam", "beam.space", "contact", "contact.orbits", "contact.integrators")
-"""Where studies get names from: what these export, and nothing behind them."""
 
 FLOORS = {
     "beam": "parameters material section centreline spring spring_shapes pieces strip_element assembly modes "
@@ -194,10 +193,13 @@ def test_one_version_everywhere():
 
 def test_hints_name_the_packages_of_the_extras():
     extras = PROJECT["optional-dependencies"]
-    wanted = {re.split("[>=]", each)[0] for name in extras.keys() - {"test"} for each in extras[name]}
+    wanted = {re.split("[>=]", each)[0] for name in extras.keys() - {"test", "docs"} for each in extras[name]}
     text = "".join(path.read_text() for path in modules("studies").values())
     assert set(" ".join(re.findall(r'needs\(f?"[^"]*", "([^"]*)"\)', text)).split()) == wanted
-    assert needs("a site", "pdoc") == "a site needs pdoc: python -m pip install pdoc"
+    assert (
+        needs("a film", "imageio-ffmpeg")
+        == "a film needs imageio-ffmpeg: python -m pip install imageio-ffmpeg"
+    )
 
 
 def test_the_console_command_calls_itself_by_its_own_name(tmp_path):

@@ -14,7 +14,6 @@ from page_judge import assert_balanced, assert_fit, seen
 from studies import letter, report
 from studies.shell import plotting
 from studies.shell.page import judged_points, page_sentence, write_page
-from studies.shell.page.documentation import module_names, write_site
 from studies.shell.page.words import prose
 from studies.shell.programs import studies
 from studies.shell.run import Run
@@ -126,20 +125,6 @@ def test_the_page_of_every_study_names_no_command_for_the_rest(tmp_path, letter_
         run.close("done", {"rows": []})
     assert "studies --all" not in write_page(tmp_path)[0].read_text().partition("<h2")[0]
     assert "makes the rest" not in page_sentence(tmp_path)
-
-
-@pytest.mark.slow
-def test_the_site_shows_what_the_public_modules_say_and_the_results(results):
-    """Warnings are errors: of pdoc, of a type that cannot be read or a module that cannot be imported."""
-    doors = ["beam", "beam.space", "contact", "contact.orbits", "contact.integrators"]
-    assert set(doors) <= set(module_names()) and "studies.tour" not in module_names()
-    index = write_site(results, write_page(results)[0], doors)
-    assert index == results / "site" / "index.html"
-    text, page = index.read_text(), (index.parent / "contact.html").read_text()
-    for place in (*(f"{door.replace('.', '/')}.html" for door in doors), "results.html"):
-        assert f'href="{place}"' in text and (index.parent / place).exists()
-    assert 'id="grazing-spring"' in text and 'id="HertzContact"' in page  # README, and a class
-    assert "study-transitions" in (index.parent / "results.html").read_text()
 
 
 @pytest.mark.parametrize("damage", [b"", b"[1]", b"\xff\xfe", b'{"verdicts": 3, "findings": 1}'])

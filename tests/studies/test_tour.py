@@ -1,5 +1,8 @@
 """The tour runs from top to bottom, and what it prints is what the physics requires."""
 
+import contextlib
+import io
+import re
 import runpy
 from pathlib import Path
 
@@ -8,17 +11,25 @@ import pytest
 
 from studies.letter import PERIODS
 
-SOURCE = Path(__file__).parents[2] / "studies" / "tour.py"
+ROOT = Path(__file__).parents[2]
+SOURCE = ROOT / "studies" / "tour.py"
 
 
 @pytest.fixture(scope="module")
 def names(tmp_path_factory):
     """What the script leaves behind, run in a folder of its own."""
     folder = tmp_path_factory.mktemp("tour")
-    with pytest.MonkeyPatch.context() as patch:
+    with pytest.MonkeyPatch.context() as patch, contextlib.redirect_stdout(io.StringIO()) as printed:
         patch.chdir(folder)
         found = runpy.run_path(str(SOURCE))
-    return {**found, "run_in": folder}
+    return {**found, "run_in": folder, "printed": printed.getvalue()}
+
+
+def test_the_start_page_shows_what_it_prints(names):
+    """All but the files at the end; rounding decides how well the orbit repeats."""
+    blocks = re.findall(r"```text\n(.*?)```", (ROOT / "docs" / "start.md").read_text("utf-8"), re.DOTALL)
+    shown, printed = (re.sub(r"\de-\d+ m", "", text) for text in ("".join(blocks), names["printed"]))
+    assert shown and printed.removeprefix(shown).startswith("drawn in")
 
 
 def test_the_orbit_is_that_of_the_letter(names):

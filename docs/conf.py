@@ -1,0 +1,120 @@
+"""The site: pages of this folder, the gallery, the docstrings of the packages, and the page of stored results.
+
+Build: make site, or python -m sphinx -W --keep-going -b html docs results/site.  GALLERY=0 leaves the examples unrun.
+"""
+
+import importlib
+import importlib.util
+import os
+import re
+import subprocess
+import sys
+from functools import cached_property
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+ROOT = HERE.parent
+os.environ.setdefault("PYVISTA_OFF_SCREEN", "true")
+if not os.environ.get("DISPLAY"):
+    os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")  # before vtk is imported
+sys.path.insert(0, str(ROOT))
+
+import pyvista  # noqa: E402
+
+import beam  # noqa: E402
+
+pyvista.OFF_SCREEN = pyvista.BUILDING_GALLERY = True
+MATHJAX = Path(importlib.util.find_spec("sphinx-mathjax-offline").origin).parent / "static/mathjax/tex-svg.js"
+
+project = html_title = "grazing-spring"
+version = release = beam.__version__
+extensions = [
+    "sphinx.ext.autodoc",
+    "sphinx.ext.autosummary",
+    "sphinx.ext.mathjax",
+    "numpydoc",
+    "myst_parser",
+    "sphinx_gallery.gen_gallery",
+    "sphinx_copybutton",
+]
+exclude_patterns = ["gallery", "examples/*.py", "made"]
+templates_path, html_static_path, html_css_files = ["_templates"], ["_static", str(MATHJAX)], ["house.css"]
+suppress_warnings = ["config.cache"]  # a function stands among the settings
+
+myst_enable_extensions = ["dollarmath", "amsmath", "colon_fence", "deflist"]
+myst_heading_anchors = 3
+mathjax_path, mathjax3_config = "tex-svg.js", {"options": {"enableMenu": False}}
+copybutton_prompt_text, copybutton_prompt_is_regexp = r">>> |\.\.\. ", True
+
+autosummary_generate, autodoc_typehints, add_module_names = True, "none", False
+numpydoc_show_class_members, toc_object_entries_show_parents = False, "hide"
+
+html_theme, html_copy_source, html_show_sourcelink = "pydata_sphinx_theme", False, False
+html_sidebars = {"start": [], "glossary": []}
+html_theme_options = {
+    "show_prev_next": False,
+    "navigation_with_keys": False,
+    "navbar_end": ["theme-switcher"],
+    "header_links_before_dropdown": 8,
+    "footer_start": [],
+    "footer_end": [],
+}
+
+sphinx_gallery_conf = {
+    "examples_dirs": ["gallery"],
+    "gallery_dirs": ["examples"],
+    "filename_pattern": r"\.py$",
+    "image_scrapers": ("matplotlib", "pyvista"),
+    "matplotlib_animations": True,
+    "within_subsection_order": "FileNameSortKey",
+    "abort_on_example_error": True,
+    "image_srcset": ["2x"],
+    "show_signature": False,
+    "min_reported_time": 1e9,
+    "write_computation_times": False,
+    "plot_gallery": os.environ.get("GALLERY", "1") == "1",
+    "doc_module": ("beam", "contact"),
+    "reference_url": {"beam": None, "contact": None},
+    "backreferences_dir": None,
+}
+
+# what the pages take from the programs: the picture of the tour, and the page of all stored results
+MADE, REPORT = HERE / "made", ROOT / "results" / "report" / "index.html"
+MADE.mkdir(exist_ok=True)
+subprocess.run([sys.executable, "-m", "studies", "tour"], cwd=MADE, env=os.environ | {"PYTHONPATH": str(ROOT)}, check=True, stdout=subprocess.DEVNULL)
+if REPORT.exists():
+    page = REPORT.read_text(encoding="utf-8")
+    style, body = (re.search(rf"<{tag}>(.*?)</{tag}>", page, re.DOTALL)[1] for tag in ("style", "main"))
+    inside = f"<style>.report {{ {style} }}</style>\n<div class='report'>{body}</div>"
+    (MADE / "results.html").write_text(inside, encoding="utf-8")
+    tags.add("stored")  # noqa: F821
+
+
+def formulas_as_they_stand(app, what, name, obj, options, lines):
+    """Indented blocks of a module's docstring are formulas; ``|x|`` outside of them is an absolute value."""
+    if what != "module":
+        return
+    shown, inside = [], False
+    for line in lines:
+        indented = line.startswith("    ")
+        if line.strip() and indented != inside:
+            if shown and shown[-1].strip():
+                shown.append("")
+            if indented:
+                shown += [".. code-block:: text", ""]
+            inside = indented
+        shown.append(line if inside or "``" in line else line.replace("|", r"\|"))
+    lines[:] = shown
+
+
+def properties_of(module, name):
+    """The public properties of a class: what it can be read for besides its fields."""
+    own = vars(getattr(importlib.import_module(module), name)).items()
+    return [key for key, one in own if isinstance(one, property | cached_property) and not key.startswith("_")]
+
+
+autosummary_context = {"properties_of": properties_of}
+
+
+def setup(app):
+    app.connect("autodoc-process-docstring", formulas_as_they_stand, priority=400)  # before numpydoc adds its mark
