@@ -82,9 +82,7 @@ class Kick:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SingleImpactOrbit(TouchOrbit):
-    """An orbit with one collision in m drive periods, built from the kick of that collision.
-
-    The families `MaximalFamily` and `KickFamily` return such orbits.
+    """An orbit with one collision in m drive periods, as `MaximalFamily` and `KickFamily` return it.
 
     Parameters
     ----------
@@ -99,8 +97,7 @@ class SingleImpactOrbit(TouchOrbit):
     phase : float
         Drive time of the first touch [s].
     displacement, velocity : ndarray, shape (n_modes,)
-        Deviations of the modes from the steady motion just before the first touch [m kg^0.5] and
-        [m kg^0.5/s].
+        Deviations from the steady motion just before the first touch [m kg^0.5], and their rates.
     kick : Kick
         The effect of the collision on the modes.
     """

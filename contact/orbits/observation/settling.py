@@ -59,16 +59,14 @@ NEAR = 1e-3  # distance over the gap from the orbit, within which the linear nei
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Settled(Generic[S]):
-    """The orbit on which a motion settled.
-
-    `settle` and `onset_orbit` return it.
+    """The orbit on which a motion settled, as `settle` and `onset_orbit` return it.
 
     Parameters
     ----------
     m : int
         Smallest period in drive periods; 0 if none was found.
     impacts : int
-        Impacts in one such period; without a period, impacts in the last block.
+        Impacts in one such period; without a period, impacts in the last block of the run.
     end : State
         The state reached; where the orbit was proved, a state on it.
     cycles : int
@@ -95,8 +93,7 @@ def settle(
 ) -> Settled[S]:
     """Follow a motion until it is known to be periodic.
 
-    The motion is followed in blocks of 2 `largest_m` drive periods.  It is settled when its points repeat, or
-    when the orbit that it approaches is proved.
+    A motion is settled when its points repeat, or when the orbit that it approaches is proved.
 
     Parameters
     ----------
@@ -105,7 +102,7 @@ def settle(
     state : State
         State at a strobe from which the motion starts.
     most_cycles : int
-        Bound of the run in drive periods; one block is run in any case.
+        Bound of the run in drive periods; a block of 2 `largest_m` is run in any case.
     largest_m : int, optional
         Longest period that is looked for, in drive periods.
     tolerance : float, optional
@@ -129,7 +126,6 @@ def settle(
     --------
     onset_orbit : Settle after the drive is raised through grazing.
     orbit_diagram : Settle at one amplitude after the other.
-    Shooting : Orbits without following a transient.
 
     Examples
     --------
@@ -169,16 +165,14 @@ def onset_orbit(
 ) -> Settled[S]:
     """Return the orbit on which the motion settles when the drive is raised through grazing.
 
-    The motion starts without impacts, and the drive is raised in one step.
-
     Parameters
     ----------
     strobed : StrobedMap
         The oscillator or map; its own amplitude does not matter.
     excess : float, optional
-        Excess F/F_g - 1 to which the drive is raised [1].
+        Excess F/F_g - 1 to which the drive is raised in one step [1].
     below : float, optional
-        Excess of the motion without impacts, below zero [1].
+        Excess at which the motion starts without impacts, below zero [1].
     most_cycles : int, optional
         Bound of the transient in drive periods.  Orbits next to grazing settle in some hundred periods.
 
@@ -189,14 +183,11 @@ def onset_orbit(
 
     Raises
     ------
-    TypeError, ValueError
-        If `strobed` is no strobed map, `below` is not below zero, or another number is out of range.
-    ContactError
-        If the motion cannot be followed.
+    TypeError, ValueError, ContactError
+        If `settle` raises them, or if `below` is not below zero.
 
     See Also
     --------
-    onset_m : The period of this orbit alone.
     settle : Settle from any state.
     orbit_end : Where this orbit ends when the drive is lowered.
 
@@ -230,7 +221,7 @@ def onset_m(
     excess : float, optional
         Excess F/F_g - 1 to which the drive is raised [1].
     below : float, optional
-        Excess of the motion without impacts, below zero [1].
+        Excess at which the motion starts without impacts, below zero [1].
     most_cycles : int, optional
         Bound of the transient in drive periods.
 
