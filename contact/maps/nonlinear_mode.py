@@ -32,22 +32,38 @@ TINY = 1e-30  # imaginary step of a derivative
 
 @dataclass(frozen=True, kw_only=True)
 class NonlinearMode:
-    """The oscillator at one drive amplitude, a ``contact.maps.protocol.StrobedMap``.
+    """One mode at finite amplitude with a stop, as a strobed map at one drive amplitude.
 
-    States are (x, x'/W) [m].  The excess is F/F_g - 1, with F_g the drive at which the motion without impacts
-    touches the stop at rest.
+    It has the methods of `StrobedMap`.  States are (x, x'/W) [m].  The excess is F/F_g - 1, with F_g the
+    drive at which the motion without impacts touches the stop at rest.  Its properties and methods raise
+    NotPeriodic where the motion that grazes, or the one without impacts, is not found.
 
     Parameters
     ----------
-    free_period, decay_rate : float
-        Damped period of small free motion [s], and mu [1/s].
-    stiffness, inertia : float
-        b and a [1/m^2].
-    gap, restitution, frequency, excess : float
-        Gap [m], restitution from 0 to 1 [1], f [Hz] and excess [1].
+    free_period : float
+        Damped period of free motion of small amplitude, above zero [s].
+    decay_rate : float
+        Decay rate mu, zero or more [1/s].
+    stiffness : float
+        Coefficient b of the cubic restoring force, above -1/(3 gap^2) [1/m^2].
+    inertia : float
+        Coefficient a of the inertia that grows with the amplitude, above -1/gap^2 [1/m^2].
+    gap : float
+        Distance from the tip at rest to the stop, above zero [m].
+    restitution : float
+        Restitution of Newton's law, from 0 to 1 [1].
+    frequency : float
+        Drive frequency f, above zero [Hz].
+    excess : float, optional
+        Excess F/F_g - 1, above -1 [1].
 
-    ValueError is raised for a wrong number, and if the stiffness or the mass turns negative on the way to the
-    gap; NotPeriodic where the motion that grazes, or the one without impacts, is not found.
+    Raises
+    ------
+    TypeError
+        If an argument is no number.
+    ValueError
+        If an argument is out of its range.  With less stiffness or inertia, the stiffness or the mass would
+        turn negative on the way to the gap.
     """
 
     free_period: float

@@ -54,25 +54,48 @@ def iterate_map(x, y, alpha, gamma, gamma_impact, rho, delay_term, out):
 
 @dataclass(frozen=True, kw_only=True)
 class NordmarkMap:
-    """Eqs. (2), (3) of the letter, a ``contact.maps.protocol.StrobedMap``: one step is one drive period.
+    """Nordmark's map, Eqs. (2) and (3) of the letter; one step is one drive period.
 
-    A state is the array (x, y), which is also its point.  An impact occurs in a step that starts from x > 0.
-    Raises ValueError for a field outside its range.
+    It has the methods of `StrobedMap`.  A state is the array (x, y), which is also its point.  An impact
+    occurs in a step that starts from x > 0.
 
     Parameters
     ----------
     alpha, gamma : float
-        Trace and determinant of the free flow over one drive period, 0 <= gamma <= 1, |alpha| < 1 + gamma.
+        Trace and determinant of the free flow over one drive period [1]; ``abs(alpha) < 1 + gamma`` and
+        ``0 <= gamma <= 1``.
     restitution : float
-        tau, from 0 to 1 [1].
-    y_line : "corrected" or "printed"
+        Restitution tau, from 0 to 1 [1].
+    y_line : {"corrected", "printed"}
         After an impact y' = -gamma tau^2 x, or -gamma x as the letter's single line has it.
     delay_term : float
-        d, zero or more [1].
+        Term d of a constant delay at the wall, zero or more [1].
     whole_turns : int
-        Integer part of 1/(f T), 1 in the letter; only rho <-> excess of an oscillating mode uses it [1].
+        Integer part of 1/(f T), 1 in the letter; it relates rho and excess of an oscillating mode [1].
     control : float
         The rho at which `steady`, `orbit` and `jacobians` work [1]; `at` sets it from the excess.
+
+    Raises
+    ------
+    TypeError
+        If a field is no number.
+    ValueError
+        If a field is out of its range.
+
+    See Also
+    --------
+    MapFamily : The periodic orbits of the map.
+    StroboscopicMap : The exact map of an oscillator.
+    contact.orbits.settle : Follow a motion until it is periodic.
+
+    Examples
+    --------
+    >>> from contact import NordmarkMap
+    >>> nordmark = NordmarkMap.from_frequencies(
+    ...     drive_frequency=22.2, free_period=40.80e-3, decay_rate=3.56, restitution=0.1
+    ... )
+    >>> nordmark.at(1e-3).orbit(nordmark.at(-1e-3).steady(), 500).impacts[-10:]
+    array([0, 0, 1, 0, 0, 0, 0, 1, 0, 0])
     """
 
     alpha: float
@@ -84,7 +107,7 @@ class NordmarkMap:
     control: float = 0.0
 
     scale: ClassVar[float] = 1e-3
-    """Size of the states of an orbit with impacts, from the slope of the root at |rho| = 1e-3 [1]."""
+    """Size of the states of an orbit with impacts, from the slope of the root at ``abs(rho) = 1e-3`` [1]."""
     period: ClassVar[float] = 1.0
     """The time of one step: the map has no clock."""
 

@@ -23,7 +23,15 @@ from contact.maps.nordmark_orbits import MOST_PERIODS
 
 @dataclass(frozen=True, kw_only=True)
 class Band:
-    """Drive frequencies `lower` to `upper` [Hz] at which p_m, `m`, appears at grazing."""
+    """The drive frequencies at which the orbit p_m appears at grazing.
+
+    Parameters
+    ----------
+    m : int
+        Period of the orbit in drive periods.
+    lower, upper : float
+        Ends of the band [Hz].
+    """
 
     m: int
     lower: float
@@ -39,10 +47,34 @@ def frequency_band(
     y_line: YLine = "corrected",
     whole_turns: int = 1,
 ) -> Band:
-    """The band of p_m, `m` >= 2 drive periods, of a mode with damped `free_period` T [s].
+    """Return the band of drive frequencies in which p_m appears at grazing.
 
-    `decay_rate` is mu [1/s], `restitution` tau [1], and `y_line` and `whole_turns` are as for `NordmarkMap`.
-    ValueError is raised for m < 2 and for parameters that `NordmarkMap.from_frequencies` refuses.
+    Parameters
+    ----------
+    m : int
+        Period of the orbit in drive periods, from 2 to 100 000.
+    free_period : float
+        Damped free period T of the mode [s].
+    decay_rate : float
+        Decay rate mu of the mode [1/s].
+    restitution : float
+        Restitution tau, from 0 to 1 [1].
+    y_line : {"corrected", "printed"}, optional
+        The reading of the line for y' after an impact, as for `NordmarkMap`.
+    whole_turns : int, optional
+        Integer part of 1/(f T), 1 in the letter.
+
+    Returns
+    -------
+    Band
+        The band with its ends [Hz].
+
+    Raises
+    ------
+    TypeError
+        If an argument is no number.
+    ValueError
+        If an argument is out of its range, or refused by `NordmarkMap.from_frequencies`.
     """
     m = require_whole("m", m, "drive periods", low=2, high=MOST_PERIODS)
     require_within("free_period", free_period, "s", above=0)

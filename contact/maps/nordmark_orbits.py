@@ -40,11 +40,24 @@ MOST_PERIODS = 100_000  # longest period of an orbit, in drive periods; its stat
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class MaximalOrbit:
-    """A periodic solution of the map with its impact at states[0].
+    """A periodic solution of Nordmark's map with one impact, at its first state.
 
-    Fields: `map` and `rho`; `m` m; `speed` X = sqrt(x_0), in proportion to the approach speed; `states`,
-    shape (m, 2), the (x, y) in order of time; `trace` and `determinant` of the derivative of m steps. All
-    pure numbers.
+    `MapFamily` returns such orbits.  All quantities are pure numbers.
+
+    Parameters
+    ----------
+    map : NordmarkMap
+        The map.
+    rho : float
+        Control parameter of the orbit [1].
+    m : int
+        Period of the orbit in drive periods.
+    speed : float
+        Root X = sqrt(x_0) at the impact, in proportion to the approach speed [1].
+    states : ndarray, shape (m, 2)
+        The states (x, y) in order of time.
+    trace, determinant : float
+        Trace and determinant of the derivative of m steps [1].
     """
 
     map: NordmarkMap
@@ -78,7 +91,44 @@ class MaximalOrbit:
 
 
 class MapFamily:
-    """The orbits p_m of a map, `m`, by the formulae of the module's docstring."""
+    """The orbits p_m of Nordmark's map, in closed form.
+
+    Each orbit has one impact in m drive periods.
+
+    Parameters
+    ----------
+    nordmark : NordmarkMap
+        The map; its `control` does not matter.
+    m : int
+        Period of the orbits in drive periods, from 1 to 100 000.
+
+    Raises
+    ------
+    TypeError
+        If `nordmark` is no NordmarkMap, or `m` is no number.
+    ValueError
+        If `m` is no whole number within its range.
+
+    See Also
+    --------
+    NordmarkMap : The map and its coefficients.
+    maximal_m : The period of the orbit that appears at grazing.
+    contact.orbits.MaximalFamily : The same orbits of an oscillator under Newton's law.
+
+    Examples
+    --------
+    Two orbits of period 5 exist between the fold and grazing; the faster one is stable.
+
+    >>> from contact import MapFamily, NordmarkMap
+    >>> nordmark = NordmarkMap.from_frequencies(
+    ...     drive_frequency=22.2, free_period=40.80e-3, decay_rate=3.56, restitution=0.1
+    ... )
+    >>> family = MapFamily(nordmark, 5)
+    >>> print(f"{family.fold().excess:.5f}")
+    -0.00082
+    >>> [orbit.stable for orbit in family.orbits(-5e-4)]
+    [False, True]
+    """
 
     def __init__(self, nordmark: NordmarkMap, m: int) -> None:
         require_kind("nordmark", nordmark, NordmarkMap, "a NordmarkMap")
@@ -159,15 +209,44 @@ class MapFamily:
 
 
 def maximal_m(nordmark: NordmarkMap) -> int:
-    """The m with pi/m < theta <= pi/(m-1), theta the angle of the map `nordmark`; 0 without oscillation."""
+    """Return the m with pi/m < theta <= pi/(m-1), theta the angle of the map.
+
+    Parameters
+    ----------
+    nordmark : NordmarkMap
+        The map; its `control` does not matter.
+
+    Returns
+    -------
+    int
+        Period in drive periods; 0 if the mode does not oscillate.
+
+    Raises
+    ------
+    TypeError
+        If `nordmark` is no NordmarkMap.
+    """
     angle = require_kind("nordmark", nordmark, NordmarkMap, "a NordmarkMap").angle
     return math.floor(math.pi / angle) + 1 if angle > 0.0 else 0
 
 
 def coexisting_m(nordmark: NordmarkMap) -> tuple[int, ...]:
-    """All m for which p_m of the map `nordmark` is admissible as rho -> 0-.
+    """Return all m for which the orbit p_m of the map is admissible as rho approaches zero from below.
 
-    They are `maximal_m`, and m + 1 where the bands overlap.
+    Parameters
+    ----------
+    nordmark : NordmarkMap
+        The map; its `control` does not matter.
+
+    Returns
+    -------
+    tuple of int
+        The result of `maximal_m`, and m + 1 where the bands overlap; empty if the mode does not oscillate.
+
+    Raises
+    ------
+    TypeError
+        If `nordmark` is no NordmarkMap.
     """
     m = maximal_m(nordmark)
     if m == 0:

@@ -23,10 +23,12 @@ Jacobians = tuple[list[tuple[np.ndarray, int]], S]
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class StrobedOrbit(Generic[S]):
-    """Strobes of a motion one after the other, and the state at the `end`.
+    """The strobes of a motion one after the other, and the state at the end.
 
     Parameters
     ----------
+    end : State
+        The state at the last strobe; the start if there are no strobes.
     points : ndarray, shape (n_strobes, n_coordinates)
         Coordinates at the strobes, all in the same unit, the start excluded.
     impacts : ndarray of int, shape (n_strobes,)
@@ -42,7 +44,13 @@ class StrobedOrbit(Generic[S]):
 class StrobedMap(Protocol[S]):
     """A strobed or iterated system.  Its coordinates have one unit and a common `scale`.
 
-    The maps of this package also take `factors` of the drive amplitude, one for each period of an `orbit`.
+    This is a protocol: every class with these methods is a strobed map.  The maps of this package also take
+    `factors` of the drive amplitude, one for each period of an `orbit`.
+
+    Parameters
+    ----------
+    *args, **kwargs : object
+        Arguments of the class that implements the protocol.
     """
 
     @property

@@ -28,7 +28,43 @@ LONGER = (0, 1, 3, 7, 15, 31, 63)
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class StroboscopicMap:
-    """The period map of a driven impact `oscillator`."""
+    """The map of an impact oscillator from one strobe to the next, exact within rounding.
+
+    Strobes are the times n/f of the drive.  States are ``contact.State`` objects at such times.
+
+    Parameters
+    ----------
+    oscillator : ImpactOscillator
+        Driven oscillator with one stop, at the tip and on its positive side.
+
+    Raises
+    ------
+    TypeError
+        If `oscillator` is no ImpactOscillator.
+    ValueError
+        If the oscillator has several stops, or one elsewhere.
+
+    See Also
+    --------
+    NordmarkMap : The letter's two-dimensional map.
+    simulate : A motion with every impact.
+    contact.orbits.settle : Follow a motion until it is periodic.
+    contact.orbits.orbit_diagram : Scan the drive amplitude.
+
+    Examples
+    --------
+    Just above grazing the motion settles on one impact in five drive periods.
+
+    >>> from beam import single_mode
+    >>> from contact import HarmonicDrive, ImpactOscillator, NewtonRestitution, Stop, StroboscopicMap
+    >>> spring = single_mode(free_period=40.80e-3, decay_rate=3.56)
+    >>> stop = Stop(gap=11.9e-3, law=NewtonRestitution(local_restitution=0.1))
+    >>> oscillator = ImpactOscillator(model=spring, stop=stop, drive=HarmonicDrive(frequency=22.2))
+    >>> strobed = StroboscopicMap(oscillator=oscillator)
+    >>> orbit = strobed.at(1e-3).orbit(strobed.at(-1e-3).steady(), 500)
+    >>> orbit.impacts[-10:]
+    array([0, 0, 1, 0, 0, 0, 0, 1, 0, 0])
+    """
 
     oscillator: ImpactOscillator
 

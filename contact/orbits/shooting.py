@@ -19,9 +19,47 @@ from contact.orbits.families.touch_orbit import PeriodicOrbit
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Shooting(NewtonFamily):
-    """The family of orbits with `impacts` touches in `m` drive periods, under any contact law.
+    """The family of periodic orbits under any contact law, by shooting.
 
-    The drive amplitude of the `oscillator` does not matter.
+    Its orbits have a given number of touches in a given number of drive periods.
+
+    Parameters
+    ----------
+    oscillator : ImpactOscillator
+        Driven oscillator with one stop and without constant load; its drive amplitude does not matter.
+    m : int
+        Period of the orbits in drive periods, one or more.
+    impacts : int, optional
+        Touches in one such period, one or more.
+
+    Raises
+    ------
+    TypeError
+        If `oscillator` is no ImpactOscillator, or `m` or `impacts` is no number.
+    ValueError
+        If the oscillator has several stops, a constant load, or no drive that moves the tip.  If `m` or
+        `impacts` is no whole number of one or more.
+
+    See Also
+    --------
+    MaximalFamily : Orbits under Newton's law in closed form.
+    KickFamily : Orbits under any law from one simulated collision.
+    fold_of : The fold, also from an orbit close to it.
+    follow : The branch of orbits with all its events.
+
+    Examples
+    --------
+    >>> from beam import single_mode
+    >>> from contact import HarmonicDrive, ImpactOscillator, LinearContact, Stop
+    >>> from contact.orbits import Shooting
+    >>> spring = single_mode(free_period=40.80e-3, decay_rate=3.56)
+    >>> law = LinearContact.with_restitution(stiffness=1e7, restitution=0.3, mass=1.0)
+    >>> stop, drive = Stop(gap=11.9e-3, law=law), HarmonicDrive(frequency=21.5)
+    >>> family = Shooting(oscillator=ImpactOscillator(model=spring, stop=stop, drive=drive), m=4)
+    >>> print(f"{family.fold().excess:.4f}")
+    -0.0073
+    >>> [(f"{orbit.speed:.2f} m/s", orbit.stable) for orbit in family.orbits(-5e-3)]
+    [('0.26 m/s', False), ('0.74 m/s', True)]
     """
 
     def orbits(self, excess: float) -> tuple[PeriodicOrbit, ...]:

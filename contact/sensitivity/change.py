@@ -34,20 +34,31 @@ STRIDE, STENCIL = 1e-3, np.arange(-2.0, 3.0)
 @final
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Change:
-    """The derivatives of an oscillator's numbers with respect to one parameter, per its unit.
+    """The derivatives of an oscillator's numbers with respect to one parameter.
+
+    All derivatives are per unit of the parameter.  A parameter can change several numbers at the same time.
 
     Parameters
     ----------
     model : ModalChange, optional
-        Derivatives of omega, decay_rate, phi and participation, each (n_modes,).
-    gap : float
+        Derivatives of omega, decay_rate, phi and participation, each of shape (n_modes,).
+    gap : float, optional
         Derivative of the gap [m].
-    law : (float, float)
-        Derivatives of the numbers of the law, in the order of its `units`, always two: zero for
-        one that it has not.  For ``DelayedRestitution`` they
-        are added to restitution and delay at every speed, and so is that of a `local_restitution`.
-    frequency, amplitude : float
-        Derivatives of drive frequency [Hz] and base amplitude [m].
+    law : (float, float), optional
+        Derivatives of the numbers of the law, in the order of its `units`; zero for a number that it does not
+        have.  For ``DelayedRestitution`` they are added to restitution and delay at every speed.  The
+        derivative of a `local_restitution` is added at every speed, too.
+    frequency : float, optional
+        Derivative of the drive frequency [Hz].
+    amplitude : float, optional
+        Derivative of the base amplitude [m].
+
+    Raises
+    ------
+    TypeError
+        If `model` is no ModalChange, or another argument is no number.
+    ValueError
+        If a number is not finite, or `law` does not hold two numbers.
     """
 
     model: ModalChange | None = None

@@ -20,14 +20,21 @@ from contact.trajectory import Regime, State, Trajectory
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class MotionDerivatives:
-    """A simulated `trajectory` and its derivatives with respect to its start (q, q') and P parameters.
+    """A simulated motion with its derivatives with respect to its start and P parameters.
+
+    The last axis of each array has first the 2 n_modes numbers (q, q') of the start, then the P parameters.
+    `motion_derivatives` returns it.
 
     Parameters
     ----------
+    trajectory : Trajectory
+        The simulated motion.
     impact_time : ndarray, shape (n_impacts, 2 n_modes + P)
         Derivatives of the times at which touches begin [s].
-    strobes, states : ndarray, shape (n_strobes or n_times, 2 n_modes, 2 n_modes + P)
-        Derivatives of the states (q, q') at the strobes, and at the requested times, which stay fixed.
+    strobes : ndarray, shape (n_strobes, 2 n_modes, 2 n_modes + P)
+        Derivatives of the states (q, q') at the strobes, which move with the drive frequency.
+    states : ndarray, shape (n_times, 2 n_modes, 2 n_modes + P)
+        Derivatives of the states (q, q') at the requested times, which stay fixed.
     """
 
     trajectory: Trajectory
@@ -44,11 +51,38 @@ def motion_derivatives(
     periods: int,
     times: Array | None = None,
 ) -> MotionDerivatives:
-    """Derivatives of a motion from `state`, off the stop, with respect to that state and to P `changes`.
+    """Return the derivatives of a motion with respect to its start and P parameters.
 
-    The driven `oscillator` runs for `periods` drive periods; `times` are rising times within the run at which
-    states are wanted [s].  ValueError is raised if the state is in contact with the stop, and as by
-    ``contact.simulate``; NoDerivative if the motion grazes the stop, or comes to rest on it.
+    Parameters
+    ----------
+    oscillator : ImpactOscillator
+        The driven oscillator, with one stop.
+    state : State
+        State from which the motion starts, off the stop.
+    changes : sequence of Change, optional
+        The P parameters, each a direction in which the numbers of the oscillator change.
+    periods : int
+        Length of the run in drive periods.
+    times : ndarray, shape (n_times,), optional
+        Rising times within the run at which states are wanted [s].
+
+    Returns
+    -------
+    MotionDerivatives
+        The motion, and derivatives of its impact times, its strobes and its states at `times`.
+
+    Raises
+    ------
+    TypeError
+        If `oscillator` is no ImpactOscillator, `state` is no State, or `changes` holds anything but Change
+        objects.
+    ValueError
+        If the state is in contact with the stop, if a change does not fit the oscillator, or for arguments
+        that ``contact.simulate`` refuses.
+    NoDerivative
+        If the motion grazes the stop, or comes to rest on it.
+    ContactError
+        If the motion cannot be followed.
     """
     require_one_stop(oscillator, "derivatives")
     require_kind("state", state, State, "a State")

@@ -30,14 +30,21 @@ SHORTER = "the orbit becomes one of a shorter period, which runs through it seve
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Branch:
-    """A branch: periodic `orbits` and `events`, both in their order along it.
+    """A branch of periodic orbits, with the events on it.
+
+    `follow` and `follow_path` return branches.  Both kinds of branches hold their orbits in the order along
+    the curve.
 
     Parameters
     ----------
+    orbits : tuple of PeriodicOrbit
+        The orbits in their order along the branch.
+    events : tuple of Event
+        The events in their order along the branch.
     ended_low, ended_high : str
-        Why the branch ends there: "range", "closed", or a sentence.
-    parameters : tuple of float
-        Where the orbits lie on a path (``contact.orbits.branches.path``); empty for other branches.
+        Why the branch ends at its first and at its last orbit: "range", "closed", or a sentence.
+    parameters : tuple of float, optional
+        The parameter of each orbit on the path of `follow_path`; empty for a branch over the amplitude.
     """
 
     orbits: tuple[PeriodicOrbit, ...]

@@ -42,10 +42,51 @@ def _require(family: NewtonFamily, near: object = None) -> None:
 def follow(
     family: NewtonFamily, start: PeriodicOrbit, *, low: float, high: float, step: float = 0.1
 ) -> Branch:
-    """The branch of a `family` through `start` between the approach velocities `low` and `high` [m/s].
+    """Follow the branch of a family through an orbit, between two approach velocities.
 
-    Its orbits come in their order along the curve; with one touch the approach velocity of the first touch
-    rises.  `step` is the longest step of arc length; near grazing, of log v.
+    With one touch, the approach velocity rises along the branch.  With several touches, it can turn round.
+
+    Parameters
+    ----------
+    family : Shooting
+        The family whose orbits are followed; the drive amplitude of its oscillator does not matter.
+    start : PeriodicOrbit
+        An orbit of the family, from which the branch is followed both ways.
+    low, high : float
+        Range of the approach velocity of the first touch, which must enclose the start [m/s].
+    step : float, optional
+        Longest step of arc length, from 1e-9 to 10 [1]; near grazing, of the logarithm of the velocity.
+
+    Returns
+    -------
+    Branch
+        The orbits of the branch, its events, and why it ends.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If `start` is no orbit of the Shooting family, outside of `low` to `high`, or `step` is out of range.
+    NotPeriodic
+        If Newton's method finds no orbit at the start.
+
+    See Also
+    --------
+    fold_of : The fold of a family.
+    follow_path : The branch along a path of oscillators, such as a response curve.
+    Shooting : The family of orbits under any contact law.
+
+    Examples
+    --------
+    >>> from beam import single_mode
+    >>> from contact import HarmonicDrive, ImpactOscillator, LinearContact, Stop
+    >>> from contact.orbits import Shooting, follow
+    >>> spring = single_mode(free_period=40.80e-3, decay_rate=3.56)
+    >>> law = LinearContact.with_restitution(stiffness=1e7, restitution=0.3, mass=1.0)
+    >>> stop, drive = Stop(gap=11.9e-3, law=law), HarmonicDrive(frequency=21.5)
+    >>> family = Shooting(oscillator=ImpactOscillator(model=spring, stop=stop, drive=drive), m=4)
+    >>> branch = follow(family, family.at_speed(0.6), low=0.2, high=2.0)
+    >>> [(event.kind, f"{event.orbit.excess:.4f}") for event in branch.events]
+    [('fold', '-0.0073'), ('grazing', '0.0121')]
     """
     _require(family)
     require_orbit(family, "start", start, member=True)
@@ -68,12 +109,33 @@ def _placed(ended: str, last: PeriodicOrbit) -> str:
 
 
 def first_event(family: NewtonFamily, start: PeriodicOrbit, lowest: float) -> Event | None:
-    """The event that ends the orbit `start` when the amplitude is lowered.
+    """Return the event that ends an orbit when the drive amplitude is lowered.
 
-    None is returned if no event is met down to the excess `lowest` [1].  An orbit ends by "grazing" where one
-    of its touches becomes a graze.  Under a soft contact without a fold it does so where its first touch is
-    slower than `LEAST_SPEED`.  If the branch ends for another reason, BranchEnded names it and has the last
-    `orbit`.
+    An orbit ends by "grazing" where one of its touches becomes a graze.  Under a soft contact without a fold,
+    this is where the first touch is slower than 1e-6 times 2 pi f gap.
+
+    Parameters
+    ----------
+    family : Shooting
+        The family to which the orbit belongs.
+    start : PeriodicOrbit
+        The orbit that is followed towards lower amplitudes.
+    lowest : float
+        Excess F/F_g - 1 down to which the branch is followed, above -1 [1].
+
+    Returns
+    -------
+    Event or None
+        The first event, or None if none is met down to `lowest`.  It can lie a part of a step below `lowest`.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If `start` is no PeriodicOrbit of the Shooting family `family`, or `lowest` is no number above -1.
+    BranchEnded
+        If the branch ends for another reason, which the message names.  Its `orbit` is the last orbit.
+    NotPeriodic
+        If Newton's method finds no orbit at the start.
     """
     _require(family)
     require_orbit(family, "start", start, member=True)
@@ -91,28 +153,56 @@ def first_event(family: NewtonFamily, start: PeriodicOrbit, lowest: float) -> Ev
 
 
 def fold_of(family: NewtonFamily, near: PeriodicOrbit | None = None) -> PeriodicOrbit | None:
-    """The fold of smallest amplitude, where the family's downward scan ends.
-
-    None is returned for one reason only: the branch has no fold.  It was followed to its graze, and up to
-    an approach velocity of 100 times 2 pi f gap, where its amplitude rises with the speed.
-
-    Where contact is soft, at an excess of some 1e-5 and less, a branch can have several folds.  It can go on
-    below the lowest of them until another touch grazes.  A fold below grazing is the orbit of smallest
-    amplitude, since the soft part of the branch begins at excess 0 upwards.  Any other fold is looked for
-    on the whole branch, as `follow` gives it.
+    """Return the fold of smallest amplitude, where the downward scan of a family ends.
 
     Parameters
     ----------
     family : Shooting
-        If its fold is not `admissible`, the family with as many touches as the collision of the kick
-        description is tried too.  The returned orbit says whether it is `admissible`.
+        The family of orbits; the drive amplitude of its oscillator does not matter.
     near : PeriodicOrbit, optional
-        An orbit close to the fold, such as the fold at a neighbouring frequency.  The first fold downhill
-        from it is taken for the lowest.  Otherwise it starts from the fold of the kick description.
+        An orbit close to the fold.  The first fold downhill from it is taken for the lowest one.
+        Without it, the search starts from the fold of the kick description.
 
-    BranchEnded is raised if there is no orbit to start from; if the branch is lost; if it reaches the
-    greatest speed and its amplitude does not yet rise there; or if it has no fold and its stable orbits end
-    by a torus or a period doubling.  The `orbit` of the error is the last one.
+    Returns
+    -------
+    PeriodicOrbit or None
+        The orbit at the fold, or None if the branch has no fold.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If `family` is no Shooting family, or `near` is no PeriodicOrbit with as many modes and touches.
+    BranchEnded
+        If there is no orbit to start from, if the branch is lost, or if its amplitude does not yet rise at
+        the greatest speed.  If it has no fold, and its stable orbits end by another event, such as a torus or
+        a period doubling.  The `orbit` of the error is the last orbit, or the orbit at that event.
+
+    See Also
+    --------
+    fold_along_frequency : The folds at several drive frequencies.
+    Shooting : The family of orbits under any contact law.
+
+    Notes
+    -----
+    A branch has no fold if it was followed to its graze, and up to 100 times 2 pi f gap, where its amplitude
+    rises with the speed.  Where contact is soft, at an excess of some 1e-5 and less, a branch can have
+    several folds.  It can go on below the lowest of them until another touch grazes.  A fold above grazing is
+    therefore looked for on the whole branch.  A fold below grazing is the orbit of smallest amplitude.
+
+    If the fold is not `admissible`, a second family is tried.  It has as many touches as the collision at the
+    fold of the kick description.
+
+    Examples
+    --------
+    >>> from beam import single_mode
+    >>> from contact import HarmonicDrive, ImpactOscillator, LinearContact, Stop
+    >>> from contact.orbits import Shooting, fold_of
+    >>> spring = single_mode(free_period=40.80e-3, decay_rate=3.56)
+    >>> law = LinearContact.with_restitution(stiffness=1e7, restitution=0.3, mass=1.0)
+    >>> stop, drive = Stop(gap=11.9e-3, law=law), HarmonicDrive(frequency=21.5)
+    >>> family = Shooting(oscillator=ImpactOscillator(model=spring, stop=stop, drive=drive), m=4)
+    >>> print(f"{fold_of(family).excess:.4f}")
+    -0.0073
     """
     fold, losses = lowest_fold(family, near)
     if losses:
@@ -172,9 +262,26 @@ def fold_of_the_kicks(family: NewtonFamily) -> SingleImpactOrbit | None:
 def fold_along_frequency(
     family: NewtonFamily, frequencies: np.ndarray, near: PeriodicOrbit | None = None
 ) -> list[PeriodicOrbit | ContactError | None]:
-    """The results of `fold_of` at `frequencies` [Hz], each started from the fold before.
+    """Return the folds of a family at several drive frequencies, each started from the fold before.
 
-    Each is the fold, None where the branch has none, or the error that says why the search failed.
+    Parameters
+    ----------
+    family : Shooting
+        The family of orbits; the drive of its oscillator is replaced by one of each frequency.
+    frequencies : ndarray, shape (n_frequencies,)
+        Drive frequencies in the order of the search [Hz].
+    near : PeriodicOrbit, optional
+        An orbit close to the fold at the first frequency.
+
+    Returns
+    -------
+    list of PeriodicOrbit, ContactError or None
+        For each frequency the fold, None without a fold, or the error that says why the search failed.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If `frequencies` is no row of numbers above zero, or if `fold_of` refuses `family` or `near`.
     """
     _require(family, near)
     found: list[PeriodicOrbit | ContactError | None] = []

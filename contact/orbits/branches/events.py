@@ -45,19 +45,26 @@ LEAST_TORUS = 1e-12  # the sign of a smaller test of a torus is rounding: withou
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Event:
-    """A point on a branch.
+    """A point on a branch at which its orbits change, such as a fold.
+
+    The kind "undecided" says that a number changes sign, but that the event could not be identified.  There
+    are four reasons:
+
+    - No orbit is found at the event; then `orbit` is the one before.
+    - The orbit is not on the curve of its neighbours.
+    - The orbit has no multiplier within 1e-6 of its place at such an event.
+    - Another event, or the end of the range, is closer than 1e-6 of arc length.
 
     Parameters
     ----------
     kind : str
-        "fold", "period doubling", "torus", "branch point" or "grazing"; or "undecided": a number changes
-        sign, but no orbit is found there (`orbit` is the one before), the orbit is not on the curve of its
-        neighbours, it has no multiplier within 1e-6 of its place, or another event or the end of the range
-        is closer than 1e-6 of arc length.
-    orbit, parameter : PeriodicOrbit, float or None
-        The orbit there, and its place on a path (``contact.orbits.branches.path``).
+        Kind of the event: "fold", "period doubling", "torus", "branch point", "grazing" or "undecided".
+    orbit : PeriodicOrbit
+        The orbit at the event.
+    parameter : float or None
+        The excess at the event [1], or its place on the path of `follow_path`; None if it is not known.
     x : ndarray, optional
-        The unknowns of the curve there (``contact.orbits.branches.curve``).
+        The unknowns of the curve at the event (``contact.orbits.branches.curve``).
     """
 
     kind: str

@@ -27,12 +27,17 @@ from contact.trajectory import Trajectory
 class OrbitDerivatives:
     """Derivatives of a periodic orbit, per unit of each of P parameters.
 
+    `orbit_derivatives` returns them.
+
     Parameters
     ----------
-    orbit, changes : PeriodicOrbit, Sensitivities
-        The orbit and the P parameters.
+    orbit : PeriodicOrbit
+        The orbit.
+    changes : Sensitivities
+        The P parameters, with the derivatives of the oscillator and of its steady motion.
     start : ndarray, shape (2 n_modes + 2, P)
-        Derivatives of (u, v, S, C) at the first touch.
+        Derivatives of (u, v, S, C) at the first touch.  These are the deviations of the modes, and the parts
+        S = Z sin(w t) and C = Z cos(w t) of the drive.
     """
 
     orbit: PeriodicOrbit
@@ -118,10 +123,33 @@ def _solved(orbit: PeriodicOrbit, changes: Sensitivities, *, at_speed: bool) -> 
 def orbit_derivatives(
     orbit: PeriodicOrbit, changes: Sequence[Change], *, at_speed: bool = False
 ) -> OrbitDerivatives:
-    """Derivatives of a periodic orbit at given drive amplitude, or `at_speed` at given approach speed.
+    """Return the derivatives of a periodic orbit with respect to parameters of its oscillator.
 
-    NoDerivative is raised at a fold, where the orbit does not follow from the amplitude, and NotPeriodic if a
-    touch of the orbit is lost.
+    Parameters
+    ----------
+    orbit : PeriodicOrbit
+        The orbit, as `Shooting` finds it.
+    changes : sequence of Change
+        The P parameters, each a direction in which the numbers of the oscillator change.
+    at_speed : bool, optional
+        Whether the approach speed is held fixed.  By default the drive amplitude is held fixed, except for
+        its own change.
+
+    Returns
+    -------
+    OrbitDerivatives
+        Derivatives of amplitude, excess, time, speed and strobes of the orbit.
+
+    Raises
+    ------
+    TypeError
+        If `orbit` is no PeriodicOrbit, or `changes` holds anything but Change objects.
+    ValueError
+        If a change has another number of modes, or changes a number that the law does not have.
+    NoDerivative
+        If the orbit does not follow from its amplitude, as at a fold, or with `at_speed` from its speed.
+    NotPeriodic
+        If a touch of the orbit is lost.
     """
     require_kind("orbit", orbit, PeriodicOrbit, "a PeriodicOrbit")
     several = Sensitivities(oscillator=orbit.oscillator, changes=changes)
@@ -130,5 +158,31 @@ def orbit_derivatives(
 
 
 def excess_derivatives(orbit: PeriodicOrbit, changes: Sequence[Change]) -> Array:
-    """d(F/F_g - 1)/dp at given approach speed, shape (P,); at a fold, the derivative of the fold itself."""
+    """Return the derivatives of the excess of an orbit at given approach speed.
+
+    At a fold they are the derivatives of the fold itself.
+
+    Parameters
+    ----------
+    orbit : PeriodicOrbit
+        The orbit, as `Shooting` or `fold_of` finds it.
+    changes : sequence of Change
+        The P parameters, each a direction in which the numbers of the oscillator change.
+
+    Returns
+    -------
+    ndarray, shape (P,)
+        Derivatives of F/F_g - 1, per unit of each parameter.
+
+    Raises
+    ------
+    TypeError
+        If `orbit` is no PeriodicOrbit, or `changes` holds anything but Change objects.
+    ValueError
+        If a change has another number of modes, or changes a number that the law does not have.
+    NoDerivative
+        If the orbit does not follow from its approach speed.
+    NotPeriodic
+        If a touch of the orbit is lost.
+    """
     return orbit_derivatives(orbit, changes, at_speed=True).excess

@@ -87,25 +87,80 @@ class PathCurve(Curve):
 def follow_path(
     path: Path, start: PeriodicOrbit, at: float, *, low: float, high: float, step: float = 0.05
 ) -> Branch:
-    """The branch through `start`, an orbit of ``path(at)``, as long as the parameter is in [low, high].
+    """Follow the branch of orbits through `start` along a path of oscillators.
+
+    The path is any smooth function of one parameter p, such as the drive frequency.  The branch turns round
+    where p does.  It is followed both ways, as long as p is in the range.
 
     Parameters
     ----------
     path : callable
-        p -> ImpactOscillator for p from `low` to `high`, smooth, of one law and number of modes.  For a force
-        of constant amplitude f, Z = f/w^2 at frequency w [rad/s]; for a base acceleration a, Z = a/w^2.
-    at, low, high : float
-        Parameter of the start, and range of the parameter.
-    step : float
-        Longest step in units of the sizes: the gap, 2 pi f gap, the grazing amplitude, a tenth of the range.
+        Function of p from `low` to `high` that returns an ImpactOscillator.  It must be smooth, and all its
+        oscillators must have one law and one number of modes.
+    start : PeriodicOrbit
+        An orbit of the oscillator ``path(at)``.
+    at : float
+        Parameter p of the start, from `low` to `high`.
+    low, high : float
+        Range of the parameter p.
+    step : float, optional
+        Longest step of arc length, above 0 and at most 1 [1].  Its units are the gap, 2 pi f gap, the grazing
+        amplitude and a tenth of the range.
 
-    The branch has orbits and their `parameters` from one end to the other, and events: "fold" (the parameter
-    turns round), "period doubling", "torus", "branch point" (two branches cross), "grazing" (a touch is
-    gained or lost), or "undecided" (``contact.orbits.Event``).  A closed curve ends where it began, "closed".
-    A curve whose orbit becomes one of a shorter period, run several times, ends there.
+    Returns
+    -------
+    Branch
+        The orbits with their `parameters`, from one end of the branch to the other, and its events.
 
-    NotPeriodic is raised if there is no orbit next to `start`, or its tip meets the stop at other times than
-    in its touches.
+    Raises
+    ------
+    TypeError
+        If `start` is no PeriodicOrbit, ``path(at)`` is no ImpactOscillator, or another argument is no number.
+    ValueError
+        If `path` is no function, if a number is out of its range, or if ``path(at)`` and the start differ in
+        their number of modes.
+    NotPeriodic
+        If there is no orbit next to `start`, or if its tip meets the stop at another time than in its
+        touches.
+
+    See Also
+    --------
+    follow : The branch of a family over the drive amplitude.
+    Event : The kinds of events, and when one is "undecided".
+    Branch : The orbits of a branch, its events, and why it ends.
+
+    Notes
+    -----
+    The kinds of events are:
+
+    - "fold": the parameter turns round.
+    - "period doubling" and "torus": the orbit loses or gains its stability.
+    - "branch point": two branches cross.
+    - "grazing": the tip gains or loses a touch.
+    - "undecided": the event could not be identified.
+
+    A closed curve ends where it began, and both its ends are "closed".  A curve whose orbit becomes one of
+    a shorter period, run several times, ends there.
+
+    For a force of constant amplitude f, give the base the amplitude Z = f/w^2 at the angular frequency w
+    [rad/s].  For a base acceleration a, give it Z = a/w^2.
+
+    Examples
+    --------
+    A response curve at constant excess: the orbit of period 4 over the drive frequency.
+
+    >>> from beam import single_mode
+    >>> from contact import HarmonicDrive, ImpactOscillator, NewtonRestitution, Stop
+    >>> from contact.orbits import Shooting, follow_path
+    >>> spring = single_mode(free_period=40.80e-3, decay_rate=3.56)
+    >>> stop = Stop(gap=11.9e-3, law=NewtonRestitution(local_restitution=0.1))
+    >>> def at_frequency(f):
+    ...     drive = HarmonicDrive(frequency=f)
+    ...     return ImpactOscillator(model=spring, stop=stop, drive=drive).with_excess(1e-3)
+    >>> start = Shooting(oscillator=at_frequency(21.5), m=4).orbits(1e-3)[-1]
+    >>> branch = follow_path(at_frequency, start, 21.5, low=21.48, high=22.0)
+    >>> [(event.kind, f"{event.parameter:.2f} Hz") for event in branch.events]
+    [('period doubling', '21.84 Hz')]
     """
     require(callable(path), f"path is {path!r}; it must be a function of one number")
     require_kind("start", start, PeriodicOrbit, "a PeriodicOrbit")

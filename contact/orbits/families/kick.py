@@ -36,14 +36,29 @@ GRID = 33  # velocities of a search, on a logarithmic grid: eight a decade
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class KickFamily(SingleImpactFamily):
-    """The p_m orbits with one collision, `m`, of an `oscillator` with any contact law, from kicks.
+    """The p_m orbits with one collision under any contact law, from kicks.
+
+    A kick is the effect of one collision that starts without ringing.  With Newton's law the orbits are
+    exact.
 
     Parameters
     ----------
+    oscillator : ImpactOscillator
+        Driven oscillator with one stop and without constant load; its drive amplitude does not matter.
+    m : int
+        Period of the orbits in drive periods, one or more.
     collision : callable, optional
-        Approach velocity [m/s] to Kick: a model of the collision in place of the simulated one, such as the
-        letter's with its restitution and delay.  `monodromy` and `multipliers` of the orbits still belong to
-        the oscillator's own collision.
+        Function of the approach velocity [m/s] that returns a Kick.  It replaces the simulated collision by
+        a model, such as the letter's with its restitution and delay.  `monodromy` and `multipliers` of the
+        orbits still belong to the oscillator's own collision.
+
+    Raises
+    ------
+    TypeError
+        If `oscillator` is no ImpactOscillator, or `m` is no number.
+    ValueError
+        If the oscillator has several stops, a constant load, or no drive that moves the tip, or `m` is not
+        a whole number of one or more.
     """
 
     collision: Callable[[float], Kick] | None = None

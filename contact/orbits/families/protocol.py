@@ -13,7 +13,15 @@ from numpy.typing import NDArray
 
 
 class Orbit(Protocol):
-    """A periodic orbit with impacts."""
+    """A periodic orbit with impacts, in any description.
+
+    This is a protocol: every class with these properties is such an orbit.
+
+    Parameters
+    ----------
+    *args, **kwargs : object
+        Arguments of the class that implements the protocol.
+    """
 
     @property
     def m(self) -> int:
@@ -41,7 +49,16 @@ class Orbit(Protocol):
 
 
 class Family(Protocol):
-    """The orbits of one period, in one description."""
+    """The periodic orbits of one period, in any description.
+
+    This is a protocol: every class with these methods is such a family.  `MaximalFamily`, `KickFamily`,
+    `Shooting` and ``contact.MapFamily`` are.
+
+    Parameters
+    ----------
+    *args, **kwargs : object
+        Arguments of the class that implements the protocol.
+    """
 
     @property
     def m(self) -> int:

@@ -63,11 +63,14 @@ class Kick:
     speed : float
         Approach speed v of the tip [m/s].
     jump : ndarray, shape (n_modes, 2)
-        B: jumps of displacement and velocity of the modes, referred to the first touch.
-    impacts, duration : int, float
-        Contacts in the collision, and time from first touch to last release [s].
-    leaves : bool
-        Whether the tip then has a velocity away from the wall, or is at rest on it.
+        Jumps B of displacement [m kg^0.5] and velocity [m kg^0.5/s] of the modes, referred to the first
+        touch.
+    impacts : int, optional
+        Touches in the collision.
+    duration : float, optional
+        Time from the first touch to the last release [s].
+    leaves : bool, optional
+        Whether the tip then has a velocity away from the wall; otherwise it is at rest on the wall.
     """
 
     speed: float
@@ -79,7 +82,25 @@ class Kick:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SingleImpactOrbit(TouchOrbit):
-    """An orbit with one collision in m drive periods, built from the `kick` of that collision."""
+    """An orbit with one collision in m drive periods, as `MaximalFamily` and `KickFamily` return it.
+
+    Parameters
+    ----------
+    oscillator : ImpactOscillator
+        The oscillator at the drive amplitude of the orbit.
+    m : int
+        Period of the orbit in drive periods.
+    excess : float
+        Excess F/F_g - 1 of the orbit [1].
+    speed : float
+        Approach velocity of the first touch [m/s].
+    phase : float
+        Drive time of the first touch [s].
+    displacement, velocity : ndarray, shape (n_modes,)
+        Deviations from the steady motion just before the first touch [m kg^0.5], and their rates.
+    kick : Kick
+        The effect of the collision on the modes.
+    """
 
     kick: Kick
 
@@ -193,9 +214,46 @@ def excess_of(p: float, rate: float) -> float:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class MaximalFamily(SingleImpactFamily):
-    """The orbits under Newton's law with a constant restitution, in closed form.
+    """The p_m orbits under Newton's law with a constant restitution, in closed form.
 
-    TypeError is raised for an oscillator with another law, or whose restitution depends on the speed.
+    Each orbit has one impact in m drive periods.  Over the excess, a stable and an unstable orbit meet in the
+    fold.
+
+    Parameters
+    ----------
+    oscillator : ImpactOscillator
+        Driven oscillator with one stop and without constant load; its drive amplitude does not matter.
+    m : int
+        Period of the orbits in drive periods, one or more.
+
+    Raises
+    ------
+    TypeError
+        If the oscillator has another law, or a restitution that depends on the speed.
+    ValueError
+        If the oscillator has several stops, a constant load, or no drive that moves the tip.  If `m` is below
+        one, or if an undamped mode returns to itself after m drive periods.
+
+    See Also
+    --------
+    contact.orbits.KickFamily : The same orbits from kicks, under any law.
+    contact.orbits.Shooting : Orbits with any number of touches, under any law.
+    contact.MapFamily : The orbits of Nordmark's map.
+
+    Examples
+    --------
+    Two orbits of period 5 exist between the fold and grazing; the faster one is stable.
+
+    >>> from beam import single_mode
+    >>> from contact import HarmonicDrive, ImpactOscillator, MaximalFamily, NewtonRestitution, Stop
+    >>> spring = single_mode(free_period=40.80e-3, decay_rate=3.56)
+    >>> stop = Stop(gap=11.9e-3, law=NewtonRestitution(local_restitution=0.1))
+    >>> oscillator = ImpactOscillator(model=spring, stop=stop, drive=HarmonicDrive(frequency=22.2))
+    >>> family = MaximalFamily(oscillator=oscillator, m=5)
+    >>> print(f"{family.fold().excess:.5f}")
+    -0.00148
+    >>> [(f"{orbit.speed:.3f} m/s", orbit.stable) for orbit in family.orbits(-1e-3)]
+    [('0.069 m/s', False), ('0.252 m/s', True)]
     """
 
     def __post_init__(self) -> None:

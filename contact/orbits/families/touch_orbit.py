@@ -125,17 +125,33 @@ class TouchOrbit(ABC):
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PeriodicOrbit(TouchOrbit):
-    """An orbit from shooting.  Its fields are the fields of `TouchOrbit` and the following.
+    """A periodic orbit of an impact oscillator, found by shooting.
+
+    `Shooting` returns such orbits, with the record of all their touches.
 
     Parameters
     ----------
+    oscillator : ImpactOscillator
+        The oscillator at the drive amplitude of the orbit.
+    m : int
+        Period of the orbit in drive periods.
+    excess : float
+        Excess F/F_g - 1 of the orbit [1].
+    speed : float
+        Approach velocity of the first touch [m/s].
+    phase : float
+        Drive time of the first touch [s].
+    displacement, velocity : ndarray, shape (n_modes,)
+        Deviations of the modes from the steady motion just before the first touch [m kg^0.5] and
+        [m kg^0.5/s].
     record : Touches
-        Its touches (``contact.touch.passage``), at times since the first one.
+        The touches of the orbit (``contact.touch.passage``), at times since the first one.
     tangent : ndarray, shape (2 n_modes, 2 n_modes)
-        Its monodromy matrix.
-    slope, residual : float
-        Change of the excess with the approach velocity along the family [s/m]; and what is left of the
-        equations, in units of the gap.
+        The monodromy matrix.
+    slope : float
+        Derivative of the excess with respect to the approach velocity along the family [s/m].
+    residual : float
+        Remaining error of the equations, in units of the gap [1].
     """
 
     record: Touches = field(repr=False)

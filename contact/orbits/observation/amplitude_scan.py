@@ -121,9 +121,25 @@ class ScannedColumn:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class AmplitudeScan:
-    """Scans of a driven `oscillator`, whose own frequency and amplitude do not matter.
+    """Upward and downward scans of the drive amplitude in a compiled loop.
 
-    `most_cycles` bounds the drive periods at one amplitude.
+    Call a scan with a drive frequency [Hz] and rising excesses F/F_g - 1 [1].  It returns the arrays `m`,
+    `impacts`, `cycles` and `reason` of shape (2, n_excesses).  The upward scan comes first, and the excesses
+    rise in both.
+
+    Parameters
+    ----------
+    oscillator : ImpactOscillator
+        Driven oscillator with one stop; its own drive frequency and amplitude do not matter.
+    most_cycles : int
+        Bound of the drive periods at one amplitude, 128 or more.
+
+    Raises
+    ------
+    TypeError
+        If `oscillator` is no ImpactOscillator, or `most_cycles` is no number.
+    ValueError
+        If the oscillator has several stops or no drive, or `most_cycles` is no whole number of 128 or more.
     """
 
     oscillator: ImpactOscillator

@@ -31,12 +31,32 @@ Strobed = StroboscopicMap | NordmarkMap
 
 
 def strobe_derivatives(strobed: Strobed, state: State | Array, m: int) -> list[tuple[Array, Array]]:
-    """M_n and b_n along `m` drive periods from `state`, a strobe off the stop.
+    """Return the derivatives of each strobe along an orbit, by the strobe before and by the amplitude.
 
-    The `strobed` oscillator or map has the excess of the orbit.  There is a pair for each period, of shapes
-    (n_coordinates, n_coordinates) and (n_coordinates,), in the coordinates of the points; an amplitude counts
-    relative to that of the orbit.  ValueError is raised if a strobe falls into a contact, NoDerivative if the
-    motion grazes the stop or rests on it.
+    Parameters
+    ----------
+    strobed : StroboscopicMap or NordmarkMap
+        Strobed oscillator or map at the excess of the orbit.
+    state : State or ndarray, shape (2,)
+        State at a strobe off the stop; a pair (x, y) for a NordmarkMap.
+    m : int
+        Number of drive periods, one or more.
+
+    Returns
+    -------
+    list of (ndarray, ndarray)
+        The pair (M_n, b_n) of each period, in the coordinates of the points.  M_n has shape (n_coordinates,
+        n_coordinates), and b_n has shape (n_coordinates,).  In b_n the amplitude counts relative to that of
+        the orbit.
+
+    Raises
+    ------
+    TypeError
+        If `strobed` is neither a StroboscopicMap nor a NordmarkMap, or `state` is no state of it.
+    ValueError
+        If a strobe falls into a contact, if `state` does not lie at a strobe, or if `m` is below one.
+    NoDerivative
+        If the motion grazes the stop, or rests on it.
     """
     require_kind("strobed", strobed, (StroboscopicMap, NordmarkMap), "a strobed oscillator or map")
     require_whole("m", m, "drive periods")
@@ -59,12 +79,36 @@ def strobe_derivatives(strobed: Strobed, state: State | Array, m: int) -> list[t
 def strobe_covariance(
     strobed: Strobed, state: State | Array, m: int, *, deviation: float, memory: float = 0.0
 ) -> Array:
-    """Covariance of the points ``strobed.orbit(state, m)`` of a stable orbit, in their unit squared.
+    """Return the covariance of the strobe points of a stable orbit under noise of the drive amplitude.
 
-    Its shape is (m, n_coordinates, n_coordinates).  `strobed`, `state` and `m` are given as in
-    `strobe_derivatives`.  `deviation` is sigma, relative to the amplitude [1], and `memory` is r, from 0 to
-    below 1 [1].  NotPeriodic is raised if the state lies on no stable orbit of this period; other errors as
-    in `strobe_derivatives`.
+    Parameters
+    ----------
+    strobed : StroboscopicMap or NordmarkMap
+        Strobed oscillator or map at the excess of the orbit.
+    state : State or ndarray, shape (2,)
+        State on the orbit, at a strobe off the stop; a pair (x, y) for a NordmarkMap.
+    m : int
+        Period of the orbit in drive periods, one or more.
+    deviation : float
+        Standard deviation sigma of the amplitude, relative to the amplitude [1].
+    memory : float, optional
+        Correlation r of the noise from one drive period to the next, from 0 to below 1 [1].
+
+    Returns
+    -------
+    ndarray, shape (m, n_coordinates, n_coordinates)
+        Covariances of the points ``strobed.orbit(state, m)``, in the square of their unit.
+
+    Raises
+    ------
+    TypeError
+        If `strobed` is neither a StroboscopicMap nor a NordmarkMap, or `state` is no state of it.
+    ValueError
+        If `deviation` or `memory` is out of range, or as in `strobe_derivatives`.
+    NotPeriodic
+        If the state lies on no stable orbit of this period.
+    NoDerivative
+        If the motion grazes the stop, or rests on it.
     """
     require_within("deviation", deviation, "[1]", low=0)
     require_within("memory", memory, "[1]", low=0)

@@ -40,17 +40,25 @@ BRACKET = "bracket"  # kind of an end of which only the bracket is known
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class OrbitEnd(Generic[S]):
-    """The end of an orbit with this `m` and these `impacts` in a downward scan.
+    """The end of an orbit in a downward scan of the drive amplitude.
 
     Parameters
     ----------
+    m : int
+        Period of the orbit in drive periods.
+    impacts : int
+        Impacts in one such period.
     excess : float
-        F/F_g - 1 at which it ends [1]; the middle of the bracket if only that is known.
+        F/F_g - 1 at which the orbit ends [1]; the middle of the bracket if only that is known.
     kind : str
-        "fold", "period doubling", "torus", "branch point", "grazing", or "bracket" if none was found.
-    held, lost, state : float, float, State
-        Last excess at which the motion held the orbit, and the excess one step below, where it lost it [1];
-        and a state on the orbit at `held`.
+        Kind of the end: "fold", "period doubling", "torus", "branch point" or "grazing".  It is "bracket" if
+        no such event was found.
+    held : float
+        Last excess at which the motion stayed on the orbit [1].
+    lost : float
+        Excess one step below, at which the motion lost the orbit [1].
+    state : State
+        A state on the orbit at the excess `held`.
     orbit : PeriodicOrbit, optional
         The orbit at its end; None for the Nordmark map, and where only a bracket is known.  Its approach
         velocity and touches identify it among several orbits of this period.
@@ -77,20 +85,67 @@ def orbit_end(
     first_step: float = 2e-4,
     lowest: float = -0.5,
 ) -> OrbitEnd[S] | None:
-    """Follow the orbit on which `state` settles at `excess` [1] downwards until it ends.
+    """Follow an orbit downwards in the drive amplitude until it ends.
 
-    None is returned if the motion at `excess` is not periodic with impacts, or still holds at `lowest`.
+    The motion first settles at `excess`.  The amplitude is then lowered in steps that carry the physical
+    state along.
 
     Parameters
     ----------
+    strobed : StrobedMap
+        The oscillator or map; its own amplitude does not matter.
+    state : State
+        State from which the motion settles on the orbit.
+    excess : float
+        Excess F/F_g - 1 at which the motion settles [1].
     most_cycles : int
-        Bound of the transient at each amplitude.
-    relative, absolute : float
-        Width of the last step: `relative` times the excess or `absolute`, whichever is larger.
-    first_step, lowest : float
-        First step of the excess, and last excess that is tried.
+        Bound of the transient at each amplitude, in drive periods.
+    relative : float, optional
+        Width of the last step over the excess, zero or more [1].
+    absolute : float, optional
+        Least width of the last step, above zero [1].  The larger of the two widths counts.
+    first_step : float, optional
+        First step of the excess, above zero [1].
+    lowest : float, optional
+        Last excess that is tried, above -1 [1].
 
-    BranchEnded is raised if the bound of steps is used up.
+    Returns
+    -------
+    OrbitEnd or None
+        Where and how the orbit ends.  None is returned if the motion at `excess` is not periodic with
+        impacts, or if the orbit still exists at `lowest`.
+
+    Raises
+    ------
+    TypeError
+        If `strobed` is no strobed map, or an argument is no number.
+    ValueError
+        If an argument is out of its range, or `state` does not lie at a strobe.
+    BranchEnded
+        If the bound of 400 steps is used up.
+    ContactError
+        If the motion at `excess` cannot be followed.
+
+    See Also
+    --------
+    onset_orbit : The orbit on which the motion settles above grazing.
+    orbit_diagram : All strobe points of a scan.
+    fold_excess : The fold of the orbit with one collision, without a scan.
+
+    Examples
+    --------
+    The orbit of period 5 appears just above grazing, and persists below it down to its fold.
+
+    >>> from beam import single_mode
+    >>> from contact import HarmonicDrive, ImpactOscillator, NewtonRestitution, Stop, StroboscopicMap
+    >>> from contact.orbits import onset_orbit, orbit_end
+    >>> spring = single_mode(free_period=40.80e-3, decay_rate=3.56)
+    >>> stop = Stop(gap=11.9e-3, law=NewtonRestitution(local_restitution=0.1))
+    >>> oscillator = ImpactOscillator(model=spring, stop=stop, drive=HarmonicDrive(frequency=22.2))
+    >>> strobed = StroboscopicMap(oscillator=oscillator)
+    >>> end = orbit_end(strobed, onset_orbit(strobed).end, 1e-3, most_cycles=1000)
+    >>> print(f"p{end.m} ends by a {end.kind} at excess {end.excess:.5f}")
+    p5 ends by a fold at excess -0.00148
     """
     require_map(strobed)
     require_within("relative", relative, "[1]", low=0)
@@ -178,19 +233,32 @@ def _map_end(family: MapFamily, bracket: OrbitEnd[S]) -> tuple[OrbitEnd[S] | Non
 
 
 def fold_excess(strobed: StrobedMap[Any], m: int) -> float | None:
-    """F_m/F_g - 1 at the fold of the p_m orbit with one collision; None without a fold, or for m < 2.
+    """Return the excess at the fold of the p_m orbit with one collision.
 
-    The Nordmark map and Newton's law have it in closed form.  Under any other law it is found by shooting,
-    with as many touches as the collision at the fold of the kick description.
+    The Nordmark map and Newton's law with a constant restitution have it in closed form.  Under any other law
+    it is found by shooting, with as many touches as the collision at the fold of the kick description.
 
     Parameters
     ----------
-    strobed : StrobedMap
-        A NordmarkMap or a StroboscopicMap; its own amplitude does not matter.
+    strobed : StroboscopicMap or NordmarkMap
+        The oscillator or map; its own amplitude does not matter.
     m : int
-        m, in drive periods; 0 for a motion that did not settle.
+        Period of the orbit in drive periods; 0 for a motion that did not settle.
 
-    BranchEnded is raised if the orbits around the expected place of the fold are not found.
+    Returns
+    -------
+    float or None
+        F_m/F_g - 1 at the fold [1], or None without a fold and for `m` below 2.
+
+    Raises
+    ------
+    TypeError
+        If `strobed` is neither a StroboscopicMap nor a NordmarkMap, or `m` is no number.
+    ValueError
+        If `m` is no whole number of zero or more, or if the oscillator has a constant load or no drive that
+        moves the tip.
+    BranchEnded
+        If the orbits around the expected place of the fold are not found.
     """
     if require_whole("m", m, "drive periods", low=0) < 2:
         return None

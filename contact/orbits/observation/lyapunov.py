@@ -37,9 +37,14 @@ SMALLEST = 1e-300  # replaces a zero on the diagonal of R, where an impact witho
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Exponents:
-    """Lyapunov exponents: `values`, largest first, shape (n_exponents,) [per drive period].
+    """Lyapunov exponents of a motion.
 
-    `error` is the standard error of the largest; 0 on a periodic orbit.
+    Parameters
+    ----------
+    values : ndarray, shape (n_exponents,)
+        The exponents, largest first [per drive period].
+    error : float
+        Standard error of the largest exponent [per drive period]; 0 on a periodic orbit.
     """
 
     values: Array
@@ -74,10 +79,36 @@ def _weighted(rates: Array, spans: Array) -> tuple[Array, float]:
 def map_exponents(
     strobed: DifferentiableMap[S], state: S, count: int, *, align: int = 0
 ) -> tuple[Exponents, S]:
-    """All exponents per step from Jacobians, over `count` steps from `state` on, and the state at the end.
+    """Return all Lyapunov exponents of a motion, from Jacobians.
 
-    The state lies on the attractor.  In `align` steps before the average the frame finds its directions.
-    ContactError is raised if the motion could not be followed, or the tip came to rest on the wall.
+    Parameters
+    ----------
+    strobed : DifferentiableMap
+        The oscillator or map at its drive amplitude, such as a StroboscopicMap or a NordmarkMap.
+    state : State
+        State on the attractor, from which the motion starts.
+    count : int
+        Number of steps in the average, 2 or more.
+    align : int, optional
+        Number of steps before the average, in which the frame of directions finds its orientation.
+
+    Returns
+    -------
+    exponents : Exponents
+        The exponents per step, with the standard error of the largest.
+    state : State
+        The state at the end.
+
+    Raises
+    ------
+    TypeError
+        If `strobed` is no strobed map with derivatives, or an argument is no number.
+    ValueError
+        If `count` or `align` is out of range, or `state` is in contact or not at a strobe.
+    NoDerivative
+        If the motion grazes the stop, or the derivatives are not finite.
+    ContactError
+        If the motion could not be followed, or the tip came to rest on the wall.
     """
     require_map(strobed, DifferentiableMap)
     count = require_whole("count", count, "steps", low=2, why=": an average needs them")
@@ -96,7 +127,35 @@ def map_exponents(
 
 
 def orbit_exponents(strobed: DifferentiableMap[S], state: S, m: int) -> Exponents:
-    """Exponents log|mu_i|/m of the periodic orbit of `m` drive periods on which `state` lies, per step."""
+    """Return the Lyapunov exponents of a periodic orbit.
+
+    They are ``log(abs(mu_i))/m``, with mu_i the Floquet multipliers of the orbit.
+
+    Parameters
+    ----------
+    strobed : DifferentiableMap
+        The oscillator or map at the amplitude of the orbit, such as a StroboscopicMap or a NordmarkMap.
+    state : State
+        State on the orbit, at a strobe off the stop.
+    m : int
+        Period of the orbit in drive periods, one or more.
+
+    Returns
+    -------
+    Exponents
+        The exponents per drive period, without an error.
+
+    Raises
+    ------
+    TypeError
+        If `strobed` is no strobed map with derivatives, or `m` is no number.
+    ValueError
+        If `m` is no whole number of one or more, or `state` is in contact or not at a strobe.
+    NotPeriodic
+        If the motion is not back at `state` after `m` periods, or if all its strobes are in contact.
+    NoDerivative
+        If the motion grazes the stop, or the derivatives are not finite.
+    """
     require_map(strobed, DifferentiableMap)
     m = require_whole("m", m, "drive periods")
     require_orbit(strobed, state, m)

@@ -24,14 +24,21 @@ S = TypeVar("S")
 class OrbitDiagram(Generic[S]):
     """A scan of the drive amplitude, in the order in which it was made.
 
+    `orbit_diagram` returns it.
+
     Parameters
     ----------
     excess : ndarray, shape (n_amplitudes,)
+        F/F_g - 1 at each amplitude [1].
     points : ndarray, shape (n_amplitudes, record_cycles)
         The observed quantity at the strobes; NaN where the computation failed.
-    m, impacts, cycles : ndarray of int, shape (n_amplitudes,)
-        Period of the settled orbit (0: none), impacts in one such period, drive periods spent settling.
-        Without a period, the impacts and the points are a sample of a motion that goes on changing.
+    m : ndarray of int, shape (n_amplitudes,)
+        Period of the settled orbit in drive periods; 0 if there is none.
+    impacts : ndarray of int, shape (n_amplitudes,)
+        Impacts in one such period.  Without a period, impacts and points are a sample of a motion that goes
+        on changing.
+    cycles : ndarray of int, shape (n_amplitudes,)
+        Drive periods spent settling.
     failures : tuple of str
         One sentence for each amplitude that failed.
     end : State
@@ -65,21 +72,65 @@ def orbit_diagram(
     largest_m: int = 64,
     early: bool = True,
 ) -> OrbitDiagram[S]:
-    """Scan the amplitudes `excesses` in the given order, starting from `state`.
+    """Scan the drive amplitude and record strobe points of the settled motion.
+
+    The physical state is carried from one amplitude to the next, so that the scan shows hysteresis.
 
     Parameters
     ----------
     strobed : StrobedMap
-        Its own amplitude does not matter.
+        The oscillator or map; its own amplitude does not matter.
     excesses : sequence of float
-        F/F_g - 1 at each step.
+        F/F_g - 1 at each amplitude, in the order of the scan [1].
+    state : State
+        State from which the motion starts at the first amplitude.
     observe : callable
-        Strobed points, shape (n, n_coordinates), to the quantity recorded, shape (n,).
-    settle_cycles, record_cycles, largest_m : int
-        Bound of the transient at each amplitude, strobe points recorded, and longest period looked for.
-    early : bool
-        End a transient as soon as the orbit is known (`settle`); otherwise every amplitude gets all
+        Function of the strobed points, shape (n, n_coordinates), that returns the recorded quantity, shape
+        (n,).  An example is the method ``tip`` of a StroboscopicMap.
+    settle_cycles : int
+        Bound of the transient at each amplitude, in drive periods.
+    record_cycles : int, optional
+        Strobe points recorded at each amplitude.
+    largest_m : int, optional
+        Longest period that is looked for, in drive periods.
+    early : bool, optional
+        Whether a transient ends as soon as the orbit is known (`settle`).  Otherwise every amplitude gets all
         `settle_cycles`.
+
+    Returns
+    -------
+    OrbitDiagram
+        The recorded points with period and impacts at each amplitude.  An amplitude at which the motion
+        cannot be followed has NaN, and a sentence in `failures`.
+
+    Raises
+    ------
+    TypeError
+        If `strobed` is no strobed map, `observe` is no function, or another argument holds no numbers.
+    ValueError
+        If `excesses` is empty, a number is out of range, or `observe` returns an array of another shape.
+
+    See Also
+    --------
+    settle : The motion at one amplitude.
+    orbit_end : The end of one orbit in a downward scan.
+    AmplitudeScan : Periods of an upward and a downward scan, in a compiled loop.
+
+    Examples
+    --------
+    Raise the drive through grazing and lower it again: the orbit of period 5 persists.
+
+    >>> from beam import single_mode
+    >>> from contact import HarmonicDrive, ImpactOscillator, NewtonRestitution, Stop, StroboscopicMap
+    >>> from contact.orbits import orbit_diagram
+    >>> spring = single_mode(free_period=40.80e-3, decay_rate=3.56)
+    >>> stop = Stop(gap=11.9e-3, law=NewtonRestitution(local_restitution=0.1))
+    >>> oscillator = ImpactOscillator(model=spring, stop=stop, drive=HarmonicDrive(frequency=22.2))
+    >>> strobed = StroboscopicMap(oscillator=oscillator)
+    >>> start, excesses = strobed.at(-1e-3).steady(), [-1e-3, 1e-3, -1e-3]
+    >>> diagram = orbit_diagram(strobed, excesses, start, observe=strobed.tip, settle_cycles=1000)
+    >>> diagram.m
+    array([1, 5, 5])
     """
     require_map(strobed)
     values = require_array("excesses", excesses, "[1]", dimensions=1, words="a row of numbers")

@@ -59,17 +59,20 @@ NEAR = 1e-3  # distance over the gap from the orbit, within which the linear nei
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Settled(Generic[S]):
-    """The orbit on which a motion settled.
+    """The orbit on which a motion settled, as `settle` and `onset_orbit` return it.
 
     Parameters
     ----------
-    m, impacts, cycles : int
-        Smallest period in strobes, 0 if none was found; impacts in one such period (or in the last block, if
-        there is none); drive periods spent.
+    m : int
+        Smallest period in drive periods; 0 if none was found.
+    impacts : int
+        Impacts in one such period; without a period, impacts in the last block of the run.
     end : State
         The state reached; where the orbit was proved, a state on it.
-    points : ndarray, shape (block, n_coordinates)
-        The last strobed points.
+    cycles : int
+        Drive periods spent.
+    points : ndarray, shape (2 largest_m, n_coordinates)
+        The strobed points of the last block, in the unit of the map.
     """
 
     m: int
@@ -88,18 +91,54 @@ def settle(
     tolerance: float = TOLERANCE,
     prove: bool = True,
 ) -> Settled[S]:
-    """Follow the motion from `state` until it is known to be periodic, or for `most_cycles` drive periods.
+    """Follow a motion until it is known to be periodic.
+
+    A motion is settled when its points repeat, or when the orbit that it approaches is proved.
 
     Parameters
     ----------
     strobed : StrobedMap
-        The beam, Eq. (1) or the Nordmark map at one drive amplitude.
-    most_cycles, largest_m : int
-        The bound on the run; a block of 2 * `largest_m` is run in any case.
-    tolerance : float
-        Relative to the scale of the strobed map.
-    prove : bool
-        Whether the transient of a StroboscopicMap ends where its orbit is proved, not where it repeats.
+        The oscillator or map at one drive amplitude, such as a StroboscopicMap or a NordmarkMap.
+    state : State
+        State at a strobe from which the motion starts.
+    most_cycles : int
+        Bound of the run in drive periods; a block of 2 `largest_m` is run in any case.
+    largest_m : int, optional
+        Longest period that is looked for, in drive periods.
+    tolerance : float, optional
+        Largest change over one period of a settled orbit, relative to the scale of the map [1].
+    prove : bool, optional
+        Whether the transient of a StroboscopicMap ends where its orbit is proved, before the points repeat.
+
+    Returns
+    -------
+    Settled
+        Period, impacts and end of the settled motion; period 0 if none was found.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If `strobed` is no strobed map, a number is out of range, or `state` does not lie at a strobe.
+    ContactError
+        If the motion cannot be followed.
+
+    See Also
+    --------
+    onset_orbit : Settle after the drive is raised through grazing.
+    orbit_diagram : Settle at one amplitude after the other.
+
+    Examples
+    --------
+    >>> from beam import single_mode
+    >>> from contact import HarmonicDrive, ImpactOscillator, NewtonRestitution, Stop, StroboscopicMap
+    >>> from contact.orbits import settle
+    >>> spring = single_mode(free_period=40.80e-3, decay_rate=3.56)
+    >>> stop = Stop(gap=11.9e-3, law=NewtonRestitution(local_restitution=0.1))
+    >>> oscillator = ImpactOscillator(model=spring, stop=stop, drive=HarmonicDrive(frequency=22.2))
+    >>> strobed = StroboscopicMap(oscillator=oscillator).at(1e-3)
+    >>> settled = settle(strobed, strobed.at(-1e-3).steady(), most_cycles=1000)
+    >>> settled.m, settled.impacts
+    (5, 1)
     """
     require_map(strobed)
     require_whole("most_cycles", most_cycles, "drive periods", low=0)
@@ -124,10 +163,45 @@ def settle(
 def onset_orbit(
     strobed: StrobedMap[S], excess: float = 1e-3, *, below: float = BELOW, most_cycles: int = 4000
 ) -> Settled[S]:
-    """The orbit on which the motion settles when the drive is raised to `excess` [1] in one step.
+    """Return the orbit on which the motion settles when the drive is raised through grazing.
 
-    The motion starts without impacts at the excess `below` [1], below zero.  The amplitude of `strobed` does
-    not matter.  `most_cycles` bounds the transient: orbits born at grazing settle in some hundred periods.
+    Parameters
+    ----------
+    strobed : StrobedMap
+        The oscillator or map; its own amplitude does not matter.
+    excess : float, optional
+        Excess F/F_g - 1 to which the drive is raised in one step [1].
+    below : float, optional
+        Excess at which the motion starts without impacts, below zero [1].
+    most_cycles : int, optional
+        Bound of the transient in drive periods.  Orbits next to grazing settle in some hundred periods.
+
+    Returns
+    -------
+    Settled
+        Period, impacts and end of the settled motion; period 0 if none up to 64 was found.
+
+    Raises
+    ------
+    TypeError, ValueError, ContactError
+        If `settle` raises them, or if `below` is not below zero.
+
+    See Also
+    --------
+    settle : Settle from any state.
+    orbit_end : Where this orbit ends when the drive is lowered.
+
+    Examples
+    --------
+    >>> from beam import single_mode
+    >>> from contact import HarmonicDrive, ImpactOscillator, NewtonRestitution, Stop, StroboscopicMap
+    >>> from contact.orbits import onset_orbit
+    >>> spring = single_mode(free_period=40.80e-3, decay_rate=3.56)
+    >>> stop = Stop(gap=11.9e-3, law=NewtonRestitution(local_restitution=0.1))
+    >>> oscillator = ImpactOscillator(model=spring, stop=stop, drive=HarmonicDrive(frequency=21.5))
+    >>> onset = onset_orbit(StroboscopicMap(oscillator=oscillator), excess=1e-3)
+    >>> print(f"period {onset.m}, with {onset.impacts} impact")
+    period 4, with 1 impact
     """
     require_map(strobed)
     raised = strobed.at(excess)
@@ -138,7 +212,29 @@ def onset_orbit(
 def onset_m(
     strobed: StrobedMap[Any], excess: float = 1e-3, *, below: float = BELOW, most_cycles: int = 4000
 ) -> int:
-    """The m of `onset_orbit` at `excess`, in drive periods; 0 for none up to 64."""
+    """Return the period of the orbit on which the motion settles above grazing.
+
+    Parameters
+    ----------
+    strobed : StrobedMap
+        The oscillator or map; its own amplitude does not matter.
+    excess : float, optional
+        Excess F/F_g - 1 to which the drive is raised [1].
+    below : float, optional
+        Excess at which the motion starts without impacts, below zero [1].
+    most_cycles : int, optional
+        Bound of the transient in drive periods.
+
+    Returns
+    -------
+    int
+        Period of the result of `onset_orbit` in drive periods; 0 if no period up to 64 was found.
+
+    Raises
+    ------
+    TypeError, ValueError, ContactError
+        If `onset_orbit` raises them.
+    """
     return onset_orbit(strobed, excess, below=below, most_cycles=most_cycles).m
 
 
