@@ -66,13 +66,13 @@ class NordmarkMap:
         ``0 <= gamma <= 1``.
     restitution : float
         Restitution tau, from 0 to 1 [1].
-    y_line : {"corrected", "printed"}
+    y_line : {"corrected", "printed"}, optional
         After an impact y' = -gamma tau^2 x, or -gamma x as the letter's single line has it.
-    delay_term : float
+    delay_term : float, optional
         Term d of a constant delay at the wall, zero or more [1].
-    whole_turns : int
+    whole_turns : int, optional
         Integer part of 1/(f T), 1 in the letter; it relates rho and excess of an oscillating mode [1].
-    control : float
+    control : float, optional
         The rho at which `steady`, `orbit` and `jacobians` work [1]; `at` sets it from the excess.
 
     Raises

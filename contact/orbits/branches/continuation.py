@@ -184,10 +184,10 @@ def fold_of(family: NewtonFamily, near: PeriodicOrbit | None = None) -> Periodic
 
     Notes
     -----
-    A branch has no fold if it was followed to its graze, and up to 100 times 2 pi f gap, where its amplitude
-    rises with the speed.  Where contact is soft, at an excess of some 1e-5 and less, a branch can have
-    several folds.  It can go on below the lowest of them until another touch grazes.  A fold above grazing is
-    therefore looked for on the whole branch.  A fold below grazing is the orbit of smallest amplitude.
+    The whole branch reaches from its graze to a speed of 100 times 2 pi f gap, where its amplitude rises.
+    Where contact is soft, at an excess of some 1e-5 and less, it can have several folds.  It can go on
+    below the lowest of them until another touch grazes.  A fold above grazing is therefore looked for on
+    the whole branch.  A fold below grazing is the orbit of smallest amplitude.
 
     If the fold is not `admissible`, a second family is tried.  It has as many touches as the collision at the
     fold of the kick description.

@@ -57,8 +57,8 @@ class KickFamily(SingleImpactFamily):
     TypeError
         If `oscillator` is no ImpactOscillator, or `m` is no number.
     ValueError
-        If the oscillator has several stops, a constant load, or no drive that moves the tip, or `m` is not
-        a whole number of one or more.
+        If the oscillator has several stops, a constant load, or no drive that moves the tip.  If `m` is no
+        whole number of one or more.
     """
 
     collision: Callable[[float], Kick] | None = None
