@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 
+import contact
 from studies.experiment.transitions.__main__ import transitions
 from studies.experiment.transitions.model import rows_at
 from studies.physics.least_model import least_modes
@@ -49,6 +50,17 @@ def test_the_readme_is_short_and_every_link_leads_somewhere():
             source = re.sub(r"^examples/index.rst", "gallery/GALLERY_HEADER.rst", target)
             source = re.sub(r"^examples/(\w+).rst", r"gallery/\1.py", source)
             assert ((ROOT if name == "README" else ROOT / "docs") / source).exists(), target
+
+
+def test_words_with_a_meaning_of_their_own_are_in_the_glossary():
+    """Words that the README and the docstring of `contact` introduce in italics; no term stands twice."""
+    terms = re.findall(r"^(\w.*)(?=\n(?:\w.*\n)?  \S)", TEXTS["glossary"], flags=re.MULTILINE)
+    texts = TEXTS["README"], contact.__doc__
+    words = {word for text in texts for word in re.findall(r"(?<![*\w])\*([a-z]+)\*", text)}
+    assert len(terms) > 60 and len(words) > 12 and len(set(terms)) == len(terms)
+    assert [
+        word for word in sorted(words) if not any(word in re.split("[ ,]+", term) for term in terms)
+    ] == []
 
 
 def test_every_study_named_exists_and_every_study_is_named():

@@ -46,11 +46,6 @@ class StrobedMap(Protocol[S]):
 
     This is a protocol: every class with these methods is a strobed map.  The maps of this package also take
     `factors` of the drive amplitude, one for each period of an `orbit`.
-
-    Parameters
-    ----------
-    *args, **kwargs : object
-        Arguments of the class that implements the protocol.
     """
 
     @property

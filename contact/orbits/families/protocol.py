@@ -16,11 +16,6 @@ class Orbit(Protocol):
     """A periodic orbit with impacts, in any description.
 
     This is a protocol: every class with these properties is such an orbit.
-
-    Parameters
-    ----------
-    *args, **kwargs : object
-        Arguments of the class that implements the protocol.
     """
 
     @property
@@ -53,11 +48,6 @@ class Family(Protocol):
 
     This is a protocol: every class with these methods is such a family.  `MaximalFamily`, `KickFamily`,
     `Shooting` and ``contact.MapFamily`` are.
-
-    Parameters
-    ----------
-    *args, **kwargs : object
-        Arguments of the class that implements the protocol.
     """
 
     @property
