@@ -36,14 +36,14 @@ from .finite_rotation import FiniteRotation
 
 @dataclass(frozen=True, kw_only=True)
 class Backbone:
-    """Dependence of the frequency of mode 1 on the amplitude.
+    """The dependence of the frequency of mode 1 on its amplitude.
 
     Parameters
     ----------
     elastic, inertial : float
-        Parts of kappa from strain energy and from kinetic energy [1].
+        Parts of the coefficient kappa from strain energy and from kinetic energy [1].
     length : float
-        Length L of the first straight run [m].
+        Length L of the first straight run [m], or of the whole centreline if none is straight.
     """
 
     elastic: float
@@ -72,13 +72,21 @@ def backbone_coefficient(spring: LeafSpring, elements: int | Sequence[int] | Non
     Parameters
     ----------
     spring : LeafSpring
+        The spring that vibrates.
     elements : int or sequence of int, optional
-        Elements on every piece, or one number for each, as for ``beam.assemble``.
+        Elements on every piece, or one number for each, as for `beam.assemble`.
+
+    Returns
+    -------
+    Backbone
+        The coefficient kappa [1] in f = f_0 (1 + kappa (A/L)^2), in two parts, and the length L [m].
 
     Raises
     ------
     ValueError
-        If the supports leave a rigid motion, or none of the first modes moves the tip.
+        If the supports leave a rigid motion, none of the first modes moves the tip, or `elements` is wrong.
+    TypeError
+        If `spring` is not a LeafSpring.
     """
     model = FiniteRotation.of(spring, elements)
     stiffness, mass = model.linear.stiffness, model.linear.mass

@@ -38,6 +38,7 @@ class PeriodicMotion:
     Parameters
     ----------
     model : FiniteRotation
+        The spring that moves.
     omega : float
         Angular frequency w [rad/s].
     decay_rate : float
@@ -45,7 +46,7 @@ class PeriodicMotion:
     coefficients : ndarray of complex, shape (2 H + 1, n_dofs)
         Fourier coefficients c_k, k = -H ... H [m].
     drive : complex
-        Z [m/s^2]; the acceleration amplitude of the base is 2 |Z|.
+        Coefficient Z of the acceleration of the base [m/s^2]; its amplitude is ``2 abs(Z)``.
     """
 
     model: FiniteRotation
@@ -122,7 +123,7 @@ class PeriodicMotion:
 
     @property
     def effective_period(self) -> float:
-        """2 pi/(w + Im lambda) [s]."""
+        """Effective period 2 pi/(w + Im lambda) [s]."""
         return float(2.0 * np.pi / (self.omega + self.exponent().imag))
 
 
@@ -139,6 +140,7 @@ def periodic_motion(
     Parameters
     ----------
     model : FiniteRotation
+        The spring that moves.
     amplitude : float
         Displacement of the tip at its turning point [m], not zero.
     frequency : float, optional
@@ -148,10 +150,19 @@ def periodic_motion(
     harmonics : int
         Highest harmonic H.
 
+    Returns
+    -------
+    PeriodicMotion
+        Frequency, Fourier coefficients and drive of the motion.
+
     Raises
     ------
     ArithmeticError
         If Newton's method, which starts from the linear motion, does not converge.
+    ValueError
+        If a value is out of range, the supports leave a rigid motion, or no mode moves the tip.
+    TypeError
+        If `model` is not a FiniteRotation, or a value is not a number.
     """
     require_kind("model", model, FiniteRotation, "a FiniteRotation")
     size = require_within("amplitude", amplitude, "m")
