@@ -32,7 +32,7 @@ class Discretization:
     spring : LeafSpring
         The spring that is discretized.
     stiffness, mass : sparse array, shape (n_dofs, n_dofs)
-        K [N/m] and M [kg, for displacements], with the mass and the rotary inertia of the tip.
+        Matrices K [N/m] and M [kg, for displacements], with the mass and the rotary inertia of the tip.
     loss_stiffness : sparse array, shape (n_dofs, n_dofs)
         Matrix K with each stiffness times its loss factor [N/m].
     base_load : ndarray, shape (n_dofs,)

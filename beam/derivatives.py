@@ -6,11 +6,11 @@ Measured parameters: the damped free period T and the decay rate c_1 are read of
 
 The ratios omega_k/omega_1 are kept, as under a change of Young's modulus.
 
-A mass m added at the tip mixes the modes.  With q = V r,
+A mass m added at the tip mixes the modes. With q = V r,
 
     diag(omega^2) V = (1 + m phi phi^T) V diag(omega'^2),   V^T (1 + m phi phi^T) V = 1,
 
-and phi' = V^T phi, Gamma' = V^T (Gamma + m phi).  T and the decay rates are kept: all omega' are scaled.
+and phi' = V^T phi, Gamma' = V^T (Gamma + m phi). T and the decay rates are kept: all omega' are scaled.
 """
 
 from dataclasses import dataclass, replace

@@ -5,8 +5,8 @@ to the modes of the spring on a fixed base, with frequencies omega and participa
 
     M = [[1, Gamma], [Gamma^T, m]],     K = diag(omega^2, (2 pi f_s)^2 m),
 
-f_s [Hz] the frequency of the suspension. If mode 1 was measured on the exciter, omega_1 is the frequency that
-gives the coupled spring the measured one.
+f_s [Hz] the frequency of the suspension. If mode 1 was measured on the exciter, omega_1 of the fixed base is
+computed such that the coupled mode has the measured frequency.
 """
 
 from collections.abc import Mapping

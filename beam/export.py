@@ -62,8 +62,8 @@ def write_modes(
     Returns
     -------
     Path
-        The file. It has one point array for each mode, with a name such as ``mode_01_24.51Hz``, and the field
-        arrays frequencies_hz, decay_rates_per_s if given, coupled (0 or 1), largest_displacement_m.
+        The file. It has one point array for each mode, with a name such as ``mode_01_24.51Hz``. The field
+        arrays are frequencies_hz, decay_rates_per_s if given, coupled (0 or 1), largest_displacement_m.
 
     Raises
     ------

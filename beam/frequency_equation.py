@@ -54,11 +54,11 @@ class UniformBeam:
     Parameters
     ----------
     length, bending_stiffness, mass_per_length : float
-        L [m], EI [N m^2] and m [kg/m], above zero.
+        Length L [m], bending stiffness EI [N m^2] and mass per length m [kg/m], above zero.
     supports : tuple of two Support
         Supports at s = 0 and s = L: "clamped", "pinned", "guided" or "free".
     tip_mass, tip_rotary_inertia : float
-        M [kg] and J [kg m^2] at s = L, zero unless that end is free.
+        Mass M [kg] and rotary inertia J [kg m^2] at s = L, zero unless that end is free.
 
     Raises
     ------
@@ -110,12 +110,12 @@ class ExactModes:
 
     @property
     def phi(self) -> Array:
-        """Values at s = L [kg^(-1/2)], shape (n_modes,)."""
+        """Values phi of the shapes at s = L [kg^(-1/2)], shape (n_modes,)."""
         return self.shapes(self.beam.length)[:, 0]
 
     @property
     def participation(self) -> Array:
-        """m int w ds + M w(L) [kg^(1/2)], shape (n_modes,), from the antiderivative of w."""
+        """Participations m int w ds + M w(L) [kg^(1/2)], shape (n_modes,), from the antiderivative of w."""
         beam, a = self.beam, self.coefficients
         bl = self.wave_numbers * beam.length
         decay = -np.expm1(-bl)

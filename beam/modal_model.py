@@ -77,8 +77,8 @@ class ModalModel:
     Raises
     ------
     ValueError
-        If a value is negative or not finite, an array has another shape than `omega`, or the two numbers of
-        the tip belong to another `phi`.
+        If a value is negative or not finite, or an array has another shape than `omega`. Also if the two
+        numbers of the tip belong to another `phi`.
     TypeError
         If an array does not hold real numbers, or another value is of the wrong kind.
 
@@ -169,8 +169,8 @@ class ModalModel:
         Raises
         ------
         ValueError
-            If a matrix is not symmetric, not finite or of another size, M or K is negative, no mode moves a
-            point, C couples modes, or rounding leaves no digits.
+            If a matrix is not symmetric, not finite or of another size, or M or K is negative. Also if no mode
+            moves a point, C couples modes, or rounding leaves no digits.
         """
         from .matrices import modes_of_matrices  # finite elements are slow to import
 
@@ -233,10 +233,10 @@ class ModalModel:
         """
         rows = {name: getattr(self, name) for name in UNITS}
         mode = residual_mode(rows, self.static_compliance, self.tip_mass)
-        longer = {name: np.append(row, mode[name]) for name, row in rows.items()}
+        rows = {name: np.append(row, mode[name]) for name, row in rows.items()}
         own = {name: mode["phi"] * (name == "tip") for name in self.points}
         points = {name: replace(p, row=np.append(p.row, own[name])) for name, p in self.points.items()}
-        return replace(self, **longer, points=points)
+        return replace(self, **rows, points=points)
 
     def on_exciter(
         self, *, mass: float, suspension_hz: float, damping_ratio: float = 0.0, measured_on_it: bool = False
@@ -249,12 +249,12 @@ class ModalModel:
         the decay rate of mode 1.
 
         The stop rides on the base, so that the contact force acts on q alone. `participation` then refers to
-        a force on the base that would move a free body of this mass as the drive moves the base. Damping stays modal.
-        Static compliance, tip mass and further points are dropped.
+        a force on the base that would move a free body of this mass as the drive moves the base. Damping
+        stays modal. Static compliance, tip mass and further points are dropped.
         """
         rows, base = {name: getattr(self, name) for name in UNITS}, (mass, suspension_hz, damping_ratio)
-        found = modes_on_exciter(rows, self.leading_mode, *base, measured_on_it)
-        return ModalModel(**found, dimensionless=self.dimensionless)
+        rows = modes_on_exciter(rows, self.leading_mode, *base, measured_on_it)
+        return ModalModel(**rows, dimensionless=self.dimensionless)
 
 
 def single_mode(*, free_period: float, decay_rate: float) -> ModalModel:

@@ -75,7 +75,7 @@ class Modes:
     shapes : ndarray, shape (n_dofs, n_modes)
         Columns x_k [kg^(-1/2)].
     phi, participation : ndarray, shape (n_modes,)
-        phi_k [kg^(-1/2)] and Gamma_k [kg^(1/2)]; exactly 0 in uncoupled modes.
+        Tip values phi_k [kg^(-1/2)] and participations Gamma_k [kg^(1/2)]; exactly 0 in uncoupled modes.
     coupled : ndarray of bool, shape (n_modes,)
         Whether the drive, the tip or a point of the spring can excite the mode.
     readouts : dict of str to ndarray, shape (n_modes,)
@@ -120,7 +120,10 @@ class Modes:
         return np.divide(lost, stored, out=np.zeros_like(lost), where=self.omega > 0.0)
 
     def displacement_along(self, points_per_element: int = 4) -> ShapesAlong:
-        """Return the shapes along the centreline, at `points_per_element` equal steps in each element."""
+        """Return the shapes along the centreline, at `points_per_element` equal steps in each element.
+
+        The result is a `ShapesAlong` with n_points = n_elements points_per_element + 1.
+        """
         require_whole("points_per_element", points_per_element, "[1]", low=1)
         line, model = self.discretization.spring.centreline, self.discretization
         s, (d, theta) = motion_along(line, model.pieces, model.ties @ self.shapes, points_per_element)

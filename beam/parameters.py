@@ -33,7 +33,7 @@ class Refusal(Exception):
 
     The message is one sentence that says what is valid. Its parts, the arguments of the constructor, are
     joined to one line. The first part is the wrong argument, perhaps described ("frequency of the drive").
-    Words, and other arguments and words, follow in turn. A sentence in one part blames no argument.
+    Words follow, and further arguments and words in turn. A sentence in one part blames no argument.
 
     Attributes
     ----------
@@ -86,7 +86,7 @@ def suspect(sentence: str) -> None:
     Warns
     -----
     SuspiciousValue
-        With this sentence.
+        Unless a sentence of this kind was given before.
     """
     filters = (f for f in warnings.filters if issubclass(SuspiciousValue, f[2]))
     action = next((f[0] for f in filters if f[1] is None or f[1].match(sentence)), "default")

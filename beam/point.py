@@ -1,4 +1,4 @@
-"""A place of a structure, as its modes see it."""
+"""A place of a structure: its motion in the modes, and its statics."""
 
 from dataclasses import dataclass
 

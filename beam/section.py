@@ -203,13 +203,13 @@ class BeamSection:
     Parameters
     ----------
     bending_stiffness, mass_per_length : float
-        EI [N m^2] and m [kg/m], both above zero.
+        Bending stiffness EI [N m^2] and mass per length m [kg/m], both above zero.
     thickness : float
         Outer size in the plane of bending [m], with which bends are compared and films drawn.
     width : float, optional
         Outer size across that plane [m], for films; 0 means as large as `thickness`.
     axial_stiffness : float, optional
-        EA [N], which matters on curved centrelines only; 0 means 12 EI/thickness^2, as a strip has.
+        Stiffness EA [N], which matters on curved centrelines only; 0 means 12 EI/thickness^2, as a strip has.
     loss_factor : float
         Loss factor of stretching and bending [1].
 

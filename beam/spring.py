@@ -181,11 +181,11 @@ class LeafSpring:
     Raises
     ------
     ValueError
-        If the number of sections is wrong, a support is unknown, an arc length or a point lies off the
-        centreline, or a support holds the tip or a point. Also if the drive has length 0, or a bend is
-        tighter than half the thickness.
+        If the number of sections is wrong, a support is unknown, or it holds the tip or a point. Also if an
+        arc length or a point lies off the centreline, the drive has length 0, or a bend is tighter than half
+        the thickness.
     TypeError
-        If a value is of another class than the one above.
+        If a value is of another class than stated above.
 
     Warns
     -----

@@ -5,9 +5,8 @@ them, with the ball in its middle. The drive is along y, in the plane of the U (
 
 The flat U is cut out of a sheet, clamped at x = 0 and driven along y, across the sheet. Its legs lie side by
 side and bend as one strip with a slot. The bend, a half ring of radius r and width b, is replaced by a plate
-of its area as wide as the U, 2 r + b. The ball sits at the apex, at r from the legs. For b = 12 mm and legs
-of 130 mm, `beam.space` gives the first four frequencies within 1 % at r = 9 mm and 4 % at r = 15 mm. The
-displacements of the tip agree within 3 % and 6 %.
+of its area as wide as the U, 2 r + b. For b = 12 mm and legs of 130 mm, `beam.space` gives the first four
+frequencies within 1 % at r = 9 mm and 4 % at r = 15 mm. The tip displacements agree within 3 % and 6 %.
 """
 
 import math
@@ -58,12 +57,12 @@ def folded_u(
     ValueError
         If a length is not positive, the bend is tighter than half the thickness, or the span is off the leg.
     TypeError
-        If a value is of another class than the one above.
+        If a value is of another class than stated above.
 
     Warns
     -----
     SuspiciousValue
-        If the bend is wider than the legs are long. Also for the values that `LeafSpring` warns of.
+        If the bend is wider than the legs are long. Also in the cases that are listed at `LeafSpring`.
     """
     leg, sections = _leg(leg_length, section, damped_section, damped_span)
     bend = Arc(radius=bend_radius, angle=math.pi)
@@ -99,7 +98,7 @@ def flat_u(
     section : StripSection
         Section of one leg without layer.
     tip : Tip
-        The body at the apex of the bend.
+        The body at the apex of the bend, at `bend_radius` from the legs.
     damped_section : StripSection, optional
         Section of one leg with the glued layer; without it the legs are bare.
     damped_span : tuple of two floats, optional
@@ -117,12 +116,12 @@ def flat_u(
     ValueError
         If a length is not positive, the legs overlap, or the span is off the leg.
     TypeError
-        If a value is of another class than the one above.
+        If a value is of another class than stated above.
 
     Warns
     -----
     SuspiciousValue
-        If `bend_radius` exceeds the width of a leg. Also for the values that `LeafSpring` warns of.
+        If `bend_radius` exceeds the width of a leg. Also in the cases that are listed at `LeafSpring`.
 
     See Also
     --------
@@ -199,12 +198,12 @@ def straight_strip(
     ValueError
         If a length is not positive, a support is unknown or holds the tip, or a place is off the strip.
     TypeError
-        If a value is of another class than the one above.
+        If a value is of another class than stated above.
 
     Warns
     -----
     SuspiciousValue
-        For the values that `LeafSpring` warns of.
+        In the cases that are listed at `LeafSpring`.
 
     See Also
     --------
@@ -256,12 +255,12 @@ def cantilever(
     ValueError
         If a length is not positive, or a place is off the strip.
     TypeError
-        If a value is of another class than the one above, or another parameter is unknown.
+        If a value is of another class than stated above, or another parameter is unknown.
 
     Warns
     -----
     SuspiciousValue
-        For the values that `LeafSpring` warns of.
+        In the cases that are listed at `LeafSpring`.
 
     See Also
     --------

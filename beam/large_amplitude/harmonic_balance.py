@@ -10,8 +10,8 @@ zero), or both parts of Z of a driven one. Forces and their derivatives are samp
 Cameron and J. H. Griffin, J. Appl. Mech. 56 (1989) 149).
 
 Deviations are e^(lambda t) sum_k d_k e^(i k w t). Their lambda make the matrix of the equations singular if
-i k w + lambda replaces i k w (G. W. Hill's method). The effective period is that of the single linear mode
-under the same drive whose deviations have the same frequency as in mode 1.
+i k w + lambda replaces i k w (G. W. Hill's method). The effective period belongs to the single linear
+mode under the same drive whose deviations have the same frequency as in mode 1.
 """
 
 from dataclasses import dataclass, replace
@@ -94,7 +94,7 @@ class PeriodicMotion:
         return found + [part.conj() for part in found[:0:-1]]  # the densities are real
 
     def derivative(self, growth: complex = 0.0) -> csc_array:
-        """Return the matrix of small deviations that grow as e^(growth t), all harmonics end to end."""
+        """Return the matrix [N/m] of small deviations that grow as e^(growth t), all harmonics end to end."""
         rate = 1j * self.harmonics * self.omega + growth
         inertia = [factor * self.model.linear.mass for factor in rate * (rate + self.decay_rate)]
         rows = [

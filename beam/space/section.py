@@ -51,11 +51,11 @@ class SpatialSection:
     axial_stiffness : float
         Axial stiffness EA [N], positive.
     in_plane_stiffness, out_of_plane_stiffness, torsional_stiffness : float
-        EI_z of bending in the plane, EI_n of bending out of it, and GJ of twist [N m^2], positive.
+        Stiffness EI_z of bending in the plane, EI_n of bending out of it, GJ of twist [N m^2], positive.
     mass_per_length, polar_inertia : float
-        m [kg/m], and I about the centroid [kg m], positive.
+        Mass per length m [kg/m], and moment I about the centroid per length [kg m], positive.
     warping_stiffness : float
-        EG, Young's modulus times the warping constant [N m^4], not negative.
+        Stiffness EG, Young's modulus times the warping constant [N m^4], not negative.
     shear_offset : float
         Distance a of the centroid from the shear centre, along n [m], not negative; 0 on an arc.
 

@@ -43,7 +43,7 @@ class SpatialSpring:
         If the number of sections is wrong, a support is unknown or holds the tip, or `tip_at` is off the
         centreline. Also if the drive has length 0, or a section with a shear offset is on an arc.
     TypeError
-        If a value is of another class than the one above.
+        If a value is of another class than stated above.
     """
 
     centreline: Centreline
