@@ -169,8 +169,8 @@ class ModalModel:
         Raises
         ------
         ValueError
-            If a matrix is not symmetric, not finite or of another size, or M or K is negative. Also if no mode
-            moves a point, C couples modes, or rounding leaves no digits.
+            If a matrix is not symmetric, not finite or of another size, or M or K is negative. Also if no
+            mode moves a point, C couples modes, or rounding leaves no digits.
         """
         from .matrices import modes_of_matrices  # finite elements are slow to import
 
@@ -253,7 +253,7 @@ class ModalModel:
         stays modal. Static compliance, tip mass and further points are dropped.
         """
         rows, base = {name: getattr(self, name) for name in UNITS}, (mass, suspension_hz, damping_ratio)
-        rows = modes_on_exciter(rows, self.leading_mode, *base, measured_on_it)
+        rows |= modes_on_exciter(rows, self.leading_mode, *base, measured_on_it)
         return ModalModel(**rows, dimensionless=self.dimensionless)
 
 
