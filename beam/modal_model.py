@@ -229,7 +229,7 @@ class ModalModel:
 
         The static compliance and the tip mass, which an instant impact meets, are then exact. The mode takes
         the damping ratio of the highest mode and moves no point but the tip. ValueError if one of these two
-        numbers is not known, or the modes already supply all of it.
+        numbers is not known, or the modes already supply almost all of it.
         """
         rows = {name: getattr(self, name) for name in UNITS}
         mode = residual_mode(rows, self.static_compliance, self.tip_mass)
