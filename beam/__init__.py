@@ -15,15 +15,15 @@ can touch a stop:
 
 The steps are types: `Material`, `StripSection`, `Centreline`, `LeafSpring`, `Discretization` (finite elements
 in the arc length), `Modes` (mass-normalised), `ModalModel`. Each of them may be made by hand, for instance a
-`ModalModel` of measured numbers; `single_mode` is the oscillator with one degree of freedom, and
-`ModalModel.from_matrices` takes mass and stiffness matrices of any other program. `exact_modes`
-solves the frequency equation of the straight beam, as a check of the elements. At finite rotations,
-`backbone_coefficient` gives the frequency over the amplitude and `periodic_motion` the motion itself.
+`ModalModel` of measured numbers. `single_mode` is the oscillator with one degree of freedom.
+`ModalModel.from_matrices` takes mass and stiffness matrices of any other program. `exact_modes` solves the
+frequency equation of the straight beam, as a check of the elements. At finite rotations,
+`backbone_coefficient` gives the frequency over the amplitude, and `periodic_motion` the motion itself.
 
 All units are SI. Parameters are keyword-only and frozen, and `dataclasses.replace` varies them. Wrong values
-raise `ValueError` or `TypeError` with one sentence (see `parameters`); values that can hardly be meant bring
-a warning, `SuspiciousValue`. A name is imported at its first use, so that a `ModalModel` of measured modes
-loads no finite elements.
+raise `ValueError` or `TypeError` with one sentence (see `beam.parameters`). Values that can hardly be meant
+bring a warning, `SuspiciousValue`. A name is imported at its first use, so that a `ModalModel` of measured
+modes loads no finite elements.
 """
 
 import ast

@@ -21,12 +21,24 @@ from .parameters import Array, InvalidValue, require, require_array, require_eac
 
 @dataclass(frozen=True, kw_only=True)
 class Straight:
-    """A straight piece, of `curvature` 0.
+    """A straight piece of a centreline.
 
     Parameters
     ----------
     length : float
         Length [m], positive.
+
+    Attributes
+    ----------
+    curvature : float
+        Always 0 [1/m].
+
+    Raises
+    ------
+    ValueError
+        If `length` is not finite and positive.
+    TypeError
+        If `length` is not a number.
     """
 
     length: float
@@ -38,7 +50,7 @@ class Straight:
 
 @dataclass(frozen=True, kw_only=True)
 class Arc:
-    """A circular arc.
+    """A circular arc of a centreline.
 
     Parameters
     ----------
@@ -46,6 +58,13 @@ class Arc:
         Radius [m], positive.
     angle : float
         Rotation of the tangent [rad], positive to the left, negative to the right, not zero.
+
+    Raises
+    ------
+    ValueError
+        If `radius` is not finite and positive, or `angle` is not finite or is zero.
+    TypeError
+        If a value is not a number.
     """
 
     radius: float
@@ -69,16 +88,23 @@ class Arc:
 
 @dataclass(frozen=True, kw_only=True)
 class Centreline:
-    """Pieces joined end to end with a common tangent.
+    """A plane curve of pieces that are joined end to end with a common tangent.
 
     Parameters
     ----------
     pieces : sequence of Straight and Arc
-        At least one piece.
+        Pieces in their order, at least one; stored as a tuple.
     start : tuple of two floats
         Point (x, y) at s = 0 [m].
     heading : float
         Angle of the tangent to the x axis at s = 0 [rad].
+
+    Raises
+    ------
+    ValueError
+        If there is no piece, or `start` or `heading` is not finite.
+    TypeError
+        If `pieces` holds something else than Straight and Arc, or a value is not a number.
     """
 
     pieces: tuple[Straight | Arc, ...]
@@ -115,7 +141,7 @@ class Centreline:
     def piece_at(self, s: ArrayLike) -> NDArray[np.intp]:
         """Return the index of the piece at each arc length s [m]; at a joint, of the piece that starts there.
 
-        An arc length off the curve, by more than rounding, raises ValueError.
+        An arc length off the curve by more than rounding raises ValueError.
         """
         s = require_array("s", s, "m", words="arc lengths")
         outside = (s < -1e-12 * self.length) | (s > (1.0 + 1e-12) * self.length)
@@ -153,7 +179,7 @@ class Centreline:
         return corners[at] + _chord(s - ends[at], self.curvatures[at], self.angle(ends[:-1])[at])
 
     def nearest(self, point: ArrayLike) -> tuple[float, float]:
-        """Return the arc length of the place nearest to a `point` (x, y), and its distance from there [m].
+        """Return the arc length [m] of the place nearest to a `point` (x, y) [m], and its distance [m].
 
         A piece of curvature k reaches the direction of the point from its centre after the angle k d.
         """

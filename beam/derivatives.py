@@ -6,11 +6,11 @@ Measured parameters: the damped free period T and the decay rate c_1 are read of
 
 The ratios omega_k/omega_1 are kept, as under a change of Young's modulus.
 
-A mass m added at the tip mixes the modes.  With q = V r,
+A mass m added at the tip mixes the modes. With q = V r,
 
     diag(omega^2) V = (1 + m phi phi^T) V diag(omega'^2),   V^T (1 + m phi phi^T) V = 1,
 
-and phi' = V^T phi, Gamma' = V^T (Gamma + m phi).  T and the decay rates are kept: all omega' are scaled.
+and phi' = V^T phi, Gamma' = V^T (Gamma + m phi). T and the decay rates are kept: all omega' are scaled.
 """
 
 from dataclasses import dataclass, replace
@@ -30,6 +30,13 @@ class ModalChange:
     ----------
     omega, decay_rate, phi, participation : array_like, shape (n_modes,)
         Derivatives [unit of the array per unit of the parameter]; stored as read-only float64 copies.
+
+    Raises
+    ------
+    ValueError
+        If an array is not finite, or has another shape than `omega`.
+    TypeError
+        If an array does not hold real numbers.
     """
 
     omega: Array
@@ -46,9 +53,26 @@ class ModalChange:
 
 
 def free_period_change(model: ModalModel) -> ModalChange:
-    """Return the derivative of `model` with respect to its damped free period T, per second.
+    """Return the derivative of a modal model with respect to its damped free period T.
 
     The decay rates and the ratios of the frequencies are fixed.
+
+    Parameters
+    ----------
+    model : ModalModel
+        The model to vary.
+
+    Returns
+    -------
+    ModalChange
+        Derivatives of the arrays [their unit per second], each of shape (n_modes,).
+
+    Raises
+    ------
+    ValueError
+        If mode 1 is overdamped and has no free period.
+    TypeError
+        If `model` is not a ModalModel.
     """
     omega, rates, k = _frequencies(model)
     change = -omega / omega[k] ** 2 * (2.0 * np.pi) ** 2 / model.free_period**3
@@ -56,10 +80,29 @@ def free_period_change(model: ModalModel) -> ModalChange:
 
 
 def decay_rate_change(model: ModalModel, mode: int | None = 0) -> ModalChange:
-    """Return the derivative of `model` with respect to the decay rate of one mode, per 1/s.
+    """Return the derivative of a modal model with respect to the decay rate of one mode, or of all.
 
-    The free period T is fixed; `mode` counts from 0. With None, all decay rates are scaled with that of
-    mode 1. If mode 1 has no damping, None changes all rates by the same amount.
+    The free period T is fixed.
+
+    Parameters
+    ----------
+    model : ModalModel
+        The model to vary.
+    mode : int, optional
+        Index of the mode, from 0. With None, all decay rates are scaled with the one of mode 1. If mode 1
+        has no damping, None changes all rates by the same amount.
+
+    Returns
+    -------
+    ModalChange
+        Derivatives of the arrays [their unit per 1/s], each of shape (n_modes,).
+
+    Raises
+    ------
+    ValueError
+        If the model has no such mode.
+    TypeError
+        If `model` is not a ModalModel, or `mode` is neither a number nor None.
     """
     (omega, rates, k), n = _frequencies(model), model.n_modes
     scaled = rates / rates[k] if rates[k] > 0.0 else np.ones(n)
@@ -69,9 +112,26 @@ def decay_rate_change(model: ModalModel, mode: int | None = 0) -> ModalChange:
 
 
 def tip_mass_change(model: ModalModel) -> ModalChange:
-    """Return the derivative of `model` with respect to the mass at its tip, per kg.
+    """Return the derivative of a modal model with respect to the mass at its tip.
 
-    The free period T and the decay rates are fixed. Frequencies must differ.
+    The free period T and the decay rates are fixed.
+
+    Parameters
+    ----------
+    model : ModalModel
+        The model to vary.
+
+    Returns
+    -------
+    ModalChange
+        Derivatives of the arrays [their unit per kg], each of shape (n_modes,).
+
+    Raises
+    ------
+    ValueError
+        If a mode that moves the tip has the frequency of another mode, or the frequency 0.
+    TypeError
+        If `model` is not a ModalModel.
     """
     omega, rates, lead = _frequencies(model)
     phi, gamma, square = model.phi, model.participation, omega**2
@@ -89,14 +149,29 @@ def tip_mass_change(model: ModalModel) -> ModalChange:
 
 
 def with_tip_mass(model: ModalModel, mass: float) -> ModalModel:
-    """Return `model` with another mass at its tip [kg], above zero; its modes span the motion.
+    """Return a modal model with another mass at its tip.
 
-    The free period T, the decay rates and the signs of `phi` are kept, and the masses of other points.
+    The modes of the given model span the motion. The free period T, the decay rates, the signs of `phi` and
+    the masses of other points are kept.
+
+    Parameters
+    ----------
+    model : ModalModel
+        The model to vary; its `tip_mass` must be known.
+    mass : float
+        The new mass at the tip [kg], above zero.
+
+    Returns
+    -------
+    ModalModel
+        The model with the new mass, with as many modes.
 
     Raises
     ------
     ValueError
-        If the model has no tip mass, or the modes cannot do with so much less of it.
+        If the model has no tip mass, or `mass` is not positive or so small that a mode loses its inertia.
+    TypeError
+        If `model` is not a ModalModel, or `mass` is not a number.
     """
     from scipy.linalg import eigh  # slow to import
 

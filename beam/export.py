@@ -44,13 +44,14 @@ def write_modes(
     largest: float = 0.01,
     ball_radius: float | None = None,
 ) -> Path:
-    """Write all mode shapes as vectors on one mesh, a .vtu file.
+    """Write all mode shapes as vectors on one mesh, a .vtu file for ParaView.
 
     Parameters
     ----------
     path : Path
-        Name of the file, ending in .vtu.
+        Name of the file, ending in .vtu. Missing folders are made.
     modes : Modes
+        Modes from `natural_modes`.
     decay_rates : array_like, shape (n_modes,), optional
         Decay rates to store with the modes [1/s].
     largest : float
@@ -61,8 +62,33 @@ def write_modes(
     Returns
     -------
     Path
-        The file. Point arrays: one for each mode, named by `mode_name`. Field arrays: frequencies_hz,
-        decay_rates_per_s if given, coupled (0 or 1), largest_displacement_m.
+        The file. It has one point array for each mode, with a name such as ``mode_01_24.51Hz``. The field
+        arrays are frequencies_hz, decay_rates_per_s if given, coupled (0 or 1), largest_displacement_m.
+
+    Raises
+    ------
+    ValueError
+        If `path` does not end in .vtu, a length is not positive, or `decay_rates` has another shape.
+    TypeError
+        If a length or a decay rate is not a number.
+
+    See Also
+    --------
+    write_mode_motion : The motion in one mode, as a list of files in time.
+    solid_spring : The mesh and the shapes on it, as arrays.
+    natural_modes : The modes to write.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> from beam import STEEL, StripSection, assemble, cantilever, natural_modes, write_modes
+    >>> strip = StripSection(material=STEEL, width=12e-3, thickness=0.5e-3)
+    >>> modes = natural_modes(assemble(cantilever(length=0.15, section=strip), elements=20), count=3)
+    >>> with TemporaryDirectory() as folder:
+    ...     file = write_modes(Path(folder) / "modes.vtu", modes, ball_radius=2e-3)
+    ...     print(file.name, file.exists())
+    modes.vtu True
     """
     require(path.suffix == ".vtu", "path", f"is {path}; its name must end in .vtu")
     mesh = solid_spring(modes, ball_radius=ball_radius)
@@ -87,13 +113,16 @@ def write_mode_motion(
     largest: float = 0.01,
     ball_radius: float | None = None,
 ) -> tuple[Path, ...]:
-    """Write one undamped period of one mode, which repeats without a seam.
+    """Write one undamped period of one mode, which repeats without a seam, as files for ParaView.
+
+    A rigid motion, which has no period, is given one second.
 
     Parameters
     ----------
     path : Path
-        Name of the list, ending in .pvd.
+        Name of the list, ending in .pvd. Missing folders are made.
     modes : Modes
+        Modes from `natural_modes`.
     mode : int
         Index of the mode, from 0.
     frames : int
@@ -101,13 +130,40 @@ def write_mode_motion(
     moved : bool
         Whether the points themselves move. In any case the array `displacement` [m] is written, for
         ParaView's filter Warp By Vector.
-    largest, ball_radius
-        As for `write_modes` [m].
+    largest : float
+        Largest displacement of the shape [m].
+    ball_radius : float, optional
+        Radius of the ball [m]; no ball without it.
 
     Returns
     -------
-    tuple of Path
-        The .pvd file, then its frames. A rigid motion, which has no period, is given one second.
+    tuple of Path, length frames + 1
+        The .pvd file, then its frames.
+
+    Raises
+    ------
+    ValueError
+        If `path` does not end in .pvd, a length is not positive, `frames` is odd, or there is no such mode.
+    TypeError
+        If a length, `mode` or `frames` is not a number.
+
+    See Also
+    --------
+    write_modes : All shapes in one file.
+    write_frames : The same for any grids in time.
+    natural_modes : The modes to write.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> from beam import STEEL, StripSection, assemble, cantilever, natural_modes, write_mode_motion
+    >>> strip = StripSection(material=STEEL, width=12e-3, thickness=0.5e-3)
+    >>> modes = natural_modes(assemble(cantilever(length=0.15, section=strip), elements=20), count=3)
+    >>> with TemporaryDirectory() as folder:
+    ...     files = write_mode_motion(Path(folder) / "second.pvd", modes, 1, frames=4)
+    ...     print(*[str(file.relative_to(folder)) for file in files[:2]], len(files))
+    second.pvd second_frames/frame_0000.vtu 5
     """
     require_whole("mode", mode, "[1]", low=0, high=modes.omega.size - 1)
     require_whole("frames", frames, "[1]", low=2)
@@ -131,17 +187,24 @@ def write_mode_motion(
 def write_frames(path: Path, frames: Iterable[tuple[float, Any]]) -> tuple[Path, ...]:
     """Write grids in time: NAME.pvd and NAME_frames/frame_0000.vtu and so on.
 
+    Frames of an earlier and longer motion of the same name are removed.
+
     Parameters
     ----------
     path : Path
-        Name of the list, ending in .pvd.
-    frames : iterable of (time [s], pyvista.UnstructuredGrid)
-        Grids to write; each gets its time as the field array TimeValue.
+        Name of the list, ending in .pvd. Missing folders are made.
+    frames : iterable of (float, pyvista.UnstructuredGrid)
+        Times [s] and grids to write; each grid gets its time as the field array TimeValue.
 
     Returns
     -------
     tuple of Path
-        The .pvd file, then its frames. Frames of an earlier and longer motion of the same name are removed.
+        The .pvd file, then its frames.
+
+    Raises
+    ------
+    ValueError
+        If `path` does not end in .pvd.
     """
     require(path.suffix == ".pvd", "path", f"is {path}; its name must end in .pvd")
     folder = path.with_name(f"{path.stem}_frames")

@@ -54,11 +54,18 @@ class UniformBeam:
     Parameters
     ----------
     length, bending_stiffness, mass_per_length : float
-        L [m], EI [N m^2] and m [kg/m], above zero.
-    supports : tuple of two supports
-        At s = 0 and s = L: "clamped", "pinned", "guided" or "free".
+        Length L [m], bending stiffness EI [N m^2] and mass per length m [kg/m], above zero.
+    supports : tuple of two Support
+        Supports at s = 0 and s = L: "clamped", "pinned", "guided" or "free".
     tip_mass, tip_rotary_inertia : float
-        M [kg] and J [kg m^2] at s = L, zero unless that end is free.
+        Mass M [kg] and rotary inertia J [kg m^2] at s = L, zero unless that end is free.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range, a support is unknown, or a tip sits at an end that is not free.
+    TypeError
+        If a value is not a number.
     """
 
     length: float
@@ -85,6 +92,7 @@ class ExactModes:
     Parameters
     ----------
     beam : UniformBeam
+        The beam that vibrates.
     wave_numbers : ndarray, shape (n_modes,)
         Wave numbers beta [1/m].
     coefficients : ndarray, shape (n_modes, 4)
@@ -102,12 +110,12 @@ class ExactModes:
 
     @property
     def phi(self) -> Array:
-        """Values at s = L [kg^(-1/2)], shape (n_modes,)."""
+        """Values phi of the shapes at s = L [kg^(-1/2)], shape (n_modes,)."""
         return self.shapes(self.beam.length)[:, 0]
 
     @property
     def participation(self) -> Array:
-        """m int w ds + M w(L) [kg^(1/2)], shape (n_modes,), from the antiderivative of w."""
+        """Participations m int w ds + M w(L) [kg^(1/2)], shape (n_modes,), from the antiderivative of w."""
         beam, a = self.beam, self.coefficients
         bl = self.wave_numbers * beam.length
         decay = -np.expm1(-bl)
@@ -138,7 +146,27 @@ def frequency_function(beam: UniformBeam, beta_length: ArrayLike) -> Array:
 
 
 def exact_modes(beam: UniformBeam, count: int) -> ExactModes:
-    """Return the first `count` modes, 1 to `MOST_MODES`, that bend the `beam`."""
+    """Return the lowest modes that bend a uniform beam, from its frequency equation.
+
+    Parameters
+    ----------
+    beam : UniformBeam
+        The beam that vibrates.
+    count : int
+        Number of modes, from 1 to 2000.
+
+    Returns
+    -------
+    ExactModes
+        Wave numbers and mass-normalised shapes, lowest first.
+
+    Raises
+    ------
+    ValueError
+        If `count` is not a whole number from 1 to 2000.
+    TypeError
+        If `beam` is not a UniformBeam, or `count` is not a number.
+    """
     require_kind("beam", beam, UniformBeam, "a UniformBeam")
     count = require_whole("count", count, "modes", high=MOST_MODES)
     grid = np.arange(SCAN_START, (count + 3) * math.pi, SCAN_STEP)

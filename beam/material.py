@@ -30,17 +30,41 @@ class Material:
 
     Parameters
     ----------
-    youngs_modulus, density : float
-        E [Pa] and rho [kg/m^3], positive.
+    youngs_modulus : float
+        Young's modulus E [Pa], positive.
     poissons_ratio : float
-        nu [1], between -1 and 1/2.
+        Poisson's ratio nu [1], between -1 and 1/2.
+    density : float
+        Density rho [kg/m^3], positive.
     loss_factor : float
-        eta [1], not negative.
+        Loss factor eta [1], not negative.
+
+    Raises
+    ------
+    ValueError
+        If a value is out of range or not finite.
+    TypeError
+        If a value is not a number.
 
     Warns
     -----
     SuspiciousValue
-        For a speed of sound that no solid has, and a loss factor above `GREATEST_LOSS`.
+        If no solid has such a speed of sound, or the loss factor is above 3.
+
+    See Also
+    --------
+    StripSection : The cross-section of a strip of this material.
+    Layer : A damping layer glued to a strip.
+
+    Examples
+    --------
+    >>> from dataclasses import replace
+    >>> from beam import BRASS, Material
+    >>> spring_steel = Material(youngs_modulus=206e9, poissons_ratio=0.29, density=7850.0)
+    >>> round(spring_steel.wave_speed), round(spring_steel.shear_modulus / 1e9, 1)  # [m/s], [GPa]
+    (5123, 79.8)
+    >>> replace(BRASS, youngs_modulus=99e9).density
+    8500.0
     """
 
     youngs_modulus: float
@@ -68,7 +92,7 @@ class Material:
 
     @property
     def shear_modulus(self) -> float:
-        """G = E / (2 (1 + nu)) [Pa]."""
+        """Shear modulus G = E / (2 (1 + nu)) [Pa]."""
         return self.youngs_modulus / (2.0 * (1.0 + self.poissons_ratio))
 
 

@@ -41,7 +41,7 @@ def modes_of_matrices(
 ) -> tuple[dict[str, Array], dict[str, Point]]:
     """Return the four arrays of a `ModalModel` by name, and its points.
 
-    The arguments are explained at `ModalModel.from_matrices`.  The first point is the tip.
+    The arguments are explained at `ModalModel.from_matrices`. The first point is the tip.
     """
     m, k = _symmetric("M", mass, "kg"), _symmetric("K", stiffness, "N/m")
     n, words = m.shape[0], f"is of another size than M, {m.shape[0]} unknowns"

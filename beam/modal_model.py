@@ -20,7 +20,7 @@ Damping is modal: it does not couple the modes, which holds for light damping an
 Caughey and M. E. J. O'Kelly, J. Appl. Mech. 32 (1965) 583).
 
 One mode is Eq. (1) of the letter: with unit mass, phi = Gamma = 1 and the damped period
-T = 2 pi / sqrt(omega^2 - (mu/2)^2) the equation above is  xi'' + mu xi' + omega^2 xi = -z''.
+T = 2 pi / sqrt(omega^2 - (mu/2)^2) the equation above is xi'' + mu xi' + omega^2 xi = -z''.
 
 The modes are complete. A static tip force, an impulse on the tip and a translation of the base therefore give
 
@@ -38,14 +38,13 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from .exciter import modes_on_exciter
 from .parameters import final, require, require_kind, require_whole, require_within, shown, suspect
 from .point import Point, check_statics, row_of
+from .residual_mode import residual_mode
 
 UNITS = {"omega": "rad/s", "decay_rate": "1/s", "phi": "kg^(-1/2)", "participation": "kg^(1/2)"}
 """Units of the arrays of a modal model."""
-LEAST_RESIDUAL = 1e-5
-"""Smallest ratio of residual to static compliance of a residual mode. Finite elements give statics to 1e-7,
-so that the residual is then uncertain by 1 %."""
 GREATEST_RATIO = 0.5
 """Largest damping ratio of the lowest mode without a warning; damping alloys reach 0.1."""
 STILL = 1e-9
@@ -57,12 +56,11 @@ STILL = 1e-9
 class ModalModel:
     """A structure as n_modes uncoupled oscillators that share one tip.
 
-    Any sequence of numbers may be given; it is stored as a read-only float64 copy.
-
     Parameters
     ----------
     omega : array_like, shape (n_modes,)
-        Undamped angular frequencies [rad/s], not negative; 0 is a rigid-body mode.
+        Undamped angular frequencies [rad/s], not negative; 0 is a rigid-body mode. This array and the next
+        three are stored as read-only float64 copies.
     decay_rate : array_like, shape (n_modes,)
         Coefficient of q' in each modal equation [1/s], not negative; may exceed 2 omega (overdamped).
     phi : array_like, shape (n_modes,)
@@ -76,10 +74,33 @@ class ModalModel:
     dimensionless : bool
         Whether lengths, masses and times are in units of your own, so that no size in metres is suspicious.
 
+    Raises
+    ------
+    ValueError
+        If a value is negative or not finite, or an array has another shape than `omega`. Also if the two
+        numbers of the tip belong to another `phi`.
+    TypeError
+        If an array does not hold real numbers, or another value is of the wrong kind.
+
     Warns
     -----
     SuspiciousValue
-        For a lowest mode that vibrates with a damping ratio above `GREATEST_RATIO`.
+        If the lowest mode that vibrates has a damping ratio above 0.5.
+
+    See Also
+    --------
+    reduce : The modal model of a discretized leaf spring.
+    single_mode : The model with one mode, Eq. (1) of the letter.
+    contact.ImpactOscillator : The model with a drive and a stop.
+
+    Examples
+    --------
+    >>> from beam import ModalModel
+    >>> measured = ModalModel(omega=[154, 960], decay_rate=[3.6, 20], phi=[8, 9], participation=[0.1, 0.05])
+    >>> [round(f, 1) for f in measured.frequencies_hz.tolist()]
+    [24.5, 152.8]
+    >>> round(1e3 * measured.free_period, 2)  # [ms]
+    40.8
     """
 
     omega: NDArray[np.float64]
@@ -140,11 +161,16 @@ class ModalModel:
         C : array_like or sparse array, shape (n, n), optional
             Damping [kg/s] that does not couple the modes; none by default.
 
+        Returns
+        -------
+        ModalModel
+            The lowest modes, with the statics of the whole structure.
+
         Raises
         ------
         ValueError
-            For matrices that are not symmetric, not finite or of other sizes, an M or K that is negative, a
-            point that no mode moves, a C that couples modes, or digits lost to rounding.
+            If a matrix is not symmetric, not finite or of another size, or M or K is negative. Also if no
+            mode moves a point, C couples modes, or rounding leaves no digits.
         """
         from .matrices import modes_of_matrices  # finite elements are slow to import
 
@@ -164,8 +190,10 @@ class ModalModel:
 
     @property
     def leading_mode(self) -> int:
-        """Index of "mode 1" of a single-mode description: the mode with the largest part phi^2/omega^2 of the
-        static compliance. On an exciter the lowest mode may belong to the suspension."""
+        """Index of "mode 1": the mode with the largest part phi^2/omega^2 of the static compliance.
+
+        On an exciter the lowest mode may be another one, the mode of the suspension.
+        """
         return int(np.argmax(np.abs(self.phi) / np.maximum(self.omega, STILL)))
 
     @property
@@ -184,9 +212,9 @@ class ModalModel:
         return replace(self, **{name: getattr(self, name)[:count] for name in UNITS}, points=points)
 
     def load_of(self, forces: Mapping[str, float]) -> NDArray[np.float64]:
-        """Return the modal load of constant `forces` [N] on named points, shape (n_modes,) [N kg^(-1/2)].
+        """Return the modal load [N kg^(-1/2)], shape (n_modes,), of constant `forces` [N] on named points.
 
-        Each acts along the motion of its point, as ``ImpactOscillator(load=...)`` takes it.
+        Each force acts along the motion of its point, as ``ImpactOscillator(load=...)`` takes it.
         """
         load = np.zeros(self.n_modes)
         for name, force in require_kind("forces", forces, Mapping, "a mapping of points to forces").items():
@@ -199,85 +227,34 @@ class ModalModel:
     def with_residual_mode(self) -> ModalModel:
         """Return the model with one more mode, which replaces all modes left out.
 
-        The mode supplies the terms missing in the sums over all modes (see the module),
-
-            phi^2 = 1/M - sum phi_k^2,   phi^2/omega^2 = C - sum phi_k^2/omega_k^2,
-            Gamma phi = 1 - sum Gamma_k phi_k.
-
-        The static compliance C and the tip mass M, which an instant impact meets, are then exact. The mode
-        takes the damping ratio of the highest mode and moves no point but the tip.
-
-        Raises
-        ------
-        ValueError
-            If the model has no static compliance or tip mass, or its modes leave nothing of one of them.
+        The static compliance and the tip mass, which an instant impact meets, are then exact. The mode takes
+        the damping ratio of the highest mode and moves no point but the tip. ValueError if one of these two
+        numbers is not known, or the modes already supply almost all of it.
         """
-        for name, unit in (("static_compliance", "m/N"), ("tip_mass", "kg")):
-            value = getattr(self, name)
-            require(bool(value), name, f"is {value} {unit}; the residual mode needs it, above zero")
-        assert self.static_compliance is not None and self.tip_mass is not None
-        oscillating = self.omega > 0.0
-        squares = np.where(oscillating, self.omega, 1.0) ** 2
-        square = 1.0 / self.tip_mass - float(self.phi @ self.phi)
-        compliance = self.static_compliance - float(np.where(oscillating, self.phi**2 / squares, 0.0).sum())
-        given = f"tip_mass is {self.tip_mass} kg and static_compliance {self.static_compliance} m/N"
-        left = f"the modes lack {square:.3g} 1/kg of 1/tip_mass and {compliance:.3g} m/N of the compliance"
-        words = f"{given}; {left}, which must be above zero and above {LEAST_RESIDUAL:g} of the whole"
-        require(square > 0.0 and compliance > LEAST_RESIDUAL * self.static_compliance, words)
-        phi, omega = np.sqrt(square), np.sqrt(square / compliance)
-        ratio = self.decay_rate[-1] / self.omega[-1] if self.omega[-1] > 0.0 else 0.0
-        participation = (1.0 - float(self.phi @ self.participation)) / phi
-        return replace(
-            self,
-            omega=np.append(self.omega, omega),
-            decay_rate=np.append(self.decay_rate, ratio * omega),
-            phi=np.append(self.phi, phi),
-            participation=np.append(self.participation, participation),
-            points={n: replace(p, row=np.append(p.row, phi * (n == "tip"))) for n, p in self.points.items()},
-        )
+        rows = {name: getattr(self, name) for name in UNITS}
+        mode = residual_mode(rows, self.static_compliance, self.tip_mass)
+        rows = {name: np.append(row, mode[name]) for name, row in rows.items()}
+        own = {name: mode["phi"] * (name == "tip") for name in self.points}
+        points = {name: replace(p, row=np.append(p.row, own[name])) for name, p in self.points.items()}
+        return replace(self, **rows, points=points)
 
     def on_exciter(
         self, *, mass: float, suspension_hz: float, damping_ratio: float = 0.0, measured_on_it: bool = False
     ) -> ModalModel:
         """Return the coupled modes of this spring and of an exciter, whose table its forces move by z.
 
-        `mass` m [kg] is the whole moving mass, spring included. `suspension_hz` f_s [Hz] and `damping_ratio`
-        [1] belong to the suspension of the table:
-
-            M = [[1, Gamma], [Gamma^T, m]],     K = diag(omega^2, (2 pi f_s)^2 m).
+        `mass` [kg] is the whole moving mass, spring included, and exceeds sum Gamma_k^2. `suspension_hz` [Hz]
+        and `damping_ratio` [1] belong to the suspension of the table. The modes of this model must belong to
+        a fixed base. If mode 1 was `measured_on_it`, the mode that moves the tip most keeps the frequency and
+        the decay rate of mode 1.
 
         The stop rides on the base, so that the contact force acts on q alone. `participation` then refers to
-        a force on the base that would move a free mass m as the drive moves the base. Damping stays modal;
-        static compliance, tip mass and further points are dropped.
-
-        This model's modes must belong to a fixed base. If mode 1 was `measured_on_it`, the mode that moves
-        the tip most keeps the frequency and the decay rate of mode 1.
+        a force on the base that would move a free body of this mass as the drive moves the base. Damping
+        stays modal. Static compliance, tip mass and further points are dropped.
         """
-        from scipy.linalg import eigh  # slow to import
-
-        require_within("suspension_hz", suspension_hz, "Hz", low=0)
-        require_within("damping_ratio", damping_ratio, "[1]", low=0)
-        gamma, square, n, k = self.participation, self.omega**2, self.n_modes, self.leading_mode
-        require_within("mass", mass, "kg", above=float(gamma @ gamma))
-        own = (2.0 * np.pi * suspension_hz) ** 2
-        if measured_on_it:
-            kept, others = square[k], np.sum(np.delete(gamma, k) ** 2 / (np.delete(square, k) - square[k]))
-            square[k] += (kept * gamma[k]) ** 2 / ((own - kept) * mass - kept**2 * others)
-        inertia = np.diag(np.append(np.ones(n), mass))
-        inertia[n, :n] = inertia[:n, n] = gamma
-        found, shapes = eigh(np.diag(np.append(square, mass * own)), inertia)
-        phi = self.phi @ shapes[:n]
-        rates = np.append(self.decay_rate, 2.0 * damping_ratio * np.sqrt(own) * mass) @ shapes**2
-        if measured_on_it:
-            rates[np.argmax(np.abs(phi))] = self.decay_rate[k]
-        omega = np.sqrt(np.maximum(found, 0.0))
-        return ModalModel(
-            omega=omega,
-            decay_rate=rates,
-            phi=phi,
-            participation=mass * shapes[n],
-            dimensionless=self.dimensionless,
-        )
+        rows, base = {name: getattr(self, name) for name in UNITS}, (mass, suspension_hz, damping_ratio)
+        rows |= modes_on_exciter(rows, self.leading_mode, *base, measured_on_it)
+        return ModalModel(**rows, dimensionless=self.dimensionless)
 
 
 def single_mode(*, free_period: float, decay_rate: float) -> ModalModel:
@@ -289,6 +266,31 @@ def single_mode(*, free_period: float, decay_rate: float) -> ModalModel:
         Period T of the free *damped* oscillation [s], positive; omega^2 = (2 pi / T)^2 + (decay_rate / 2)^2.
     decay_rate : float
         The letter's mu [1/s], not negative: amplitudes fall as exp(-mu t / 2).
+
+    Returns
+    -------
+    ModalModel
+        The model with this mode, n_modes = 1.
+
+    Raises
+    ------
+    ValueError
+        If `free_period` is not positive, or `decay_rate` is negative.
+    TypeError
+        If a value is not a number.
+
+    See Also
+    --------
+    ModalModel : A model with any number of modes.
+    free_period_change : The derivative with respect to the free period.
+    contact.ImpactOscillator : The model with a drive and a stop.
+
+    Examples
+    --------
+    >>> from beam import single_mode
+    >>> spring = single_mode(free_period=40.80e-3, decay_rate=3.56)
+    >>> round(float(spring.omega[0]), 2), round(float(spring.frequencies_hz[0]), 2)  # [rad/s], [Hz]
+    (154.01, 24.51)
     """
     require_within("free_period", free_period, "s", above=0)
     require_within("decay_rate", decay_rate, "1/s", low=0)

@@ -44,11 +44,11 @@ class ShapesAlong:
     s : ndarray, shape (n_points,)
         Arc length [m], increasing from 0.
     points, tangent, normal : ndarray, shape (n_points, 3)
-        Points at rest [m] and unit vectors of the local frame; its third direction is z, along the width.
+        Points at rest [m] and unit vectors of the local frame [1]; its third direction is z, along the width.
     displacement : ndarray, shape (n_modes, n_points, 3)
-        Relative to the base [kg^(-1/2)]: times a modal coordinate it is in metres.
+        Displacement relative to the base [kg^(-1/2)]: times a modal coordinate it is in metres.
     rotation : ndarray, shape (n_modes, n_points)
-        About z [kg^(-1/2) m^(-1)]: times a modal coordinate it is in radians.
+        Rotation about z [kg^(-1/2) m^(-1)]: times a modal coordinate it is in radians.
     """
 
     s: Array
@@ -61,7 +61,7 @@ class ShapesAlong:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Modes:
-    """Mass-normalised modes, lowest first.
+    """Mass-normalised modes of a leaf spring, lowest first.
 
     The sign of each mode is fixed: phi >= 0, or Gamma >= 0 where phi is zero. An uncoupled mode first moves
     towards the positive normal.
@@ -69,16 +69,24 @@ class Modes:
     Parameters
     ----------
     discretization : Discretization
+        Finite-element model of the spring.
     omega : ndarray, shape (n_modes,)
         Angular frequencies [rad/s]; exactly 0 for rigid motions.
     shapes : ndarray, shape (n_dofs, n_modes)
         Columns x_k [kg^(-1/2)].
     phi, participation : ndarray, shape (n_modes,)
-        phi_k [kg^(-1/2)] and Gamma_k [kg^(1/2)]; exactly 0 in uncoupled modes.
+        Tip values phi_k [kg^(-1/2)] and participations Gamma_k [kg^(1/2)]; exactly 0 in uncoupled modes.
     coupled : ndarray of bool, shape (n_modes,)
         Whether the drive, the tip or a point of the spring can excite the mode.
     readouts : dict of str to ndarray, shape (n_modes,)
         Values at the read-outs and at the points of the spring [kg^(-1/2), rotations kg^(-1/2) m^(-1)].
+
+    Raises
+    ------
+    ValueError
+        If an array is not finite or has the wrong shape.
+    TypeError
+        If `discretization` is not a Discretization, or an array does not hold real numbers.
     """
 
     discretization: Discretization
@@ -112,7 +120,10 @@ class Modes:
         return np.divide(lost, stored, out=np.zeros_like(lost), where=self.omega > 0.0)
 
     def displacement_along(self, points_per_element: int = 4) -> ShapesAlong:
-        """Return the shapes along the centreline, at `points_per_element` equal steps in each element."""
+        """Return the shapes along the centreline, at `points_per_element` equal steps in each element.
+
+        The result is a `ShapesAlong` with n_points = n_elements points_per_element + 1.
+        """
         require_whole("points_per_element", points_per_element, "[1]", low=1)
         line, model = self.discretization.spring.centreline, self.discretization
         s, (d, theta) = motion_along(line, model.pieces, model.ties @ self.shapes, points_per_element)
@@ -121,19 +132,44 @@ class Modes:
 
 
 def natural_modes(discretization: Discretization, count: int) -> Modes:
-    """Return the `count` lowest modes.
+    """Return the lowest natural modes of a discretized leaf spring.
 
     Parameters
     ----------
     discretization : Discretization
+        Finite-element model from `assemble`.
     count : int
-        From 1 to the number of degrees of freedom. A mode is accurate with four or more elements in each half
-        wave.
+        Number of modes, from 1 to the number of degrees of freedom. A mode is accurate with four or more
+        elements in each half wave.
+
+    Returns
+    -------
+    Modes
+        Frequencies and mass-normalised shapes, lowest first.
 
     Raises
     ------
     ValueError
-        If the lengths of the elements differ so much that rounding hides the modes.
+        If `count` is out of range, or the lengths of the elements differ so much that rounding hides the
+        modes.
+    TypeError
+        If `discretization` is not a Discretization, or `count` is not a number.
+
+    See Also
+    --------
+    assemble : The step before, the finite-element model.
+    reduce : The next step, the modal model.
+    exact_modes : Modes of the uniform straight beam from its frequency equation.
+
+    Examples
+    --------
+    >>> from beam import STEEL, StripSection, Tip, assemble, cantilever, natural_modes
+    >>> strip = StripSection(material=STEEL, width=12e-3, thickness=0.5e-3)
+    >>> modes = natural_modes(assemble(cantilever(length=0.15, section=strip, tip=Tip(mass=2e-3))), count=3)
+    >>> [round(f, 1) for f in modes.frequencies_hz.tolist()]
+    [12.7, 93.5, 279.2]
+    >>> modes.coupled.tolist()
+    [True, True, True]
     """
     require_kind("discretization", discretization, Discretization, "a Discretization, from assemble")
     size = discretization.n_dofs

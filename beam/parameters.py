@@ -29,10 +29,18 @@ Class = TypeVar("Class", bound=type)
 
 
 class Refusal(Exception):
-    """Wrong use; the message is one sentence that says what is valid.
+    """Wrong use: the class of both `InvalidValue` and `InvalidType`.
 
-    Its parts are joined to one line: first the wrong argument, perhaps described ("frequency of the drive"),
-    then words, and other arguments and words in turn. A sentence in one part blames no argument.
+    The message is one sentence that says what is valid. Its parts, the arguments of the constructor, are
+    joined to one line. The first part is the wrong argument, perhaps described ("frequency of the drive").
+    Words follow, and further arguments and words in turn. A sentence in one part blames no argument.
+
+    Attributes
+    ----------
+    args : tuple of str
+        The parts of the sentence.
+    field : str
+        Name of the wrong argument, such as "frequency"; "" if the refusal blames none.
     """
 
     def __str__(self) -> str:
@@ -45,15 +53,21 @@ class Refusal(Exception):
 
 
 class InvalidValue(Refusal, ValueError):
-    """A value out of range, not finite, of the wrong shape, or in contradiction to another argument."""
+    """A value out of range, not finite, of the wrong shape, or in contradiction to another argument.
+
+    It is a ValueError; `Refusal` describes its parts.
+    """
 
 
 class InvalidType(Refusal, TypeError):
-    """An argument of the wrong kind."""
+    """An argument of the wrong kind.
+
+    It is a TypeError; `Refusal` describes its parts.
+    """
 
 
 class SuspiciousValue(UserWarning):
-    """A parameter that is valid but can hardly be meant; the message says why."""
+    """A warning of a parameter that is valid but can hardly be meant; the message says why."""
 
 
 _said: set[str] = set()
@@ -68,6 +82,11 @@ def suspect(sentence: str) -> None:
         Names field, value and unit, and says why. Sentences that differ in their numbers only are of one
         kind, and a process gives each kind once. All are given if the user's filter of warnings is "always",
         "all" or "error".
+
+    Warns
+    -----
+    SuspiciousValue
+        Unless a sentence of this kind was given before.
     """
     filters = (f for f in warnings.filters if issubclass(SuspiciousValue, f[2]))
     action = next((f[0] for f in filters if f[1] is None or f[1].match(sentence)), "default")

@@ -1,4 +1,4 @@
-"""A place of a structure, as its modes see it."""
+"""A place of a structure: its motion in the modes, and its statics."""
 
 from dataclasses import dataclass
 
@@ -11,7 +11,7 @@ from .parameters import final, require, require_array, require_within
 @final
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Point:
-    """A place of a structure, as its modes and its statics see it.
+    """A place of a structure, with its motion in the modes and its statics.
 
     Parameters
     ----------
@@ -22,6 +22,13 @@ class Point:
         Displacement per unit static force at the place, all modes of the structure included [m/N].
     mass : float, optional
         Lumped mass at the place [kg], the limit of 1 / sum row^2.
+
+    Raises
+    ------
+    ValueError
+        If `row` is empty, of more dimensions or not finite, or one of the numbers is negative.
+    TypeError
+        If a value is not a number.
     """
 
     row: NDArray[np.float64]

@@ -47,10 +47,18 @@ class Layer:
     Parameters
     ----------
     material : Material
+        The damping material, such as `beam.DAMPING_TAPE`.
     thickness : float
         Thickness of one layer [m], positive.
     both_sides : bool
         Whether each face has such a layer, or only the upper one.
+
+    Raises
+    ------
+    ValueError
+        If `thickness` is not finite and positive.
+    TypeError
+        If `material` is not a Material, `thickness` is not a number, or `both_sides` is not True or False.
     """
 
     material: Material
@@ -65,13 +73,14 @@ class Layer:
 
 @dataclass(frozen=True, kw_only=True)
 class StripSection:
-    """A flat strip that bends about its width.
+    """A flat strip that bends about its width, bare or with a glued layer.
 
     Parameters
     ----------
     material : Material
+        Material of the bare strip.
     width : float
-        b [m], positive.
+        Width b [m], positive.
     thickness : float
         Thickness of the bare strip [m], positive and at most the width.
     layer : Layer, optional
@@ -79,6 +88,30 @@ class StripSection:
     slot : float
         Free space in the middle of the width [m], not counted in b. It leaves two legs of width b/2, which
         bend as one strip and twist each by itself.
+
+    Raises
+    ------
+    ValueError
+        If a length is out of range, or the thickness exceeds the width.
+    TypeError
+        If `material` is not a Material, `layer` is not a Layer, or a length is not a number.
+
+    See Also
+    --------
+    BeamSection : A section by its stiffness and mass, such as a rod or a tube.
+    Layer : A damping layer glued to the strip.
+    cantilever : A straight strip with such a section.
+
+    Examples
+    --------
+    >>> from beam import BRASS, DAMPING_TAPE, Layer, StripSection
+    >>> bare = StripSection(material=BRASS, width=12e-3, thickness=0.65e-3)
+    >>> round(1e3 * bare.bending_stiffness, 2), round(1e3 * bare.mass_per_length, 2)  # [mN m^2], [g/m]
+    (28.84, 66.3)
+    >>> tape = Layer(material=DAMPING_TAPE, thickness=0.5e-3)
+    >>> damped = StripSection(material=BRASS, width=12e-3, thickness=0.65e-3, layer=tape)
+    >>> round(damped.bending_loss_factor, 3)
+    0.052
     """
 
     material: Material
@@ -109,17 +142,17 @@ class StripSection:
 
     @property
     def axial_stiffness(self) -> float:
-        """EA [N]."""
+        """Axial stiffness EA [N]."""
         return float(self._energies()[0].sum())
 
     @property
     def bending_stiffness(self) -> float:
-        """EI about the neutral axis [N m^2]."""
+        """Bending stiffness EI about the neutral axis [N m^2]."""
         return float(self._energies()[1].sum())
 
     @property
     def torsional_stiffness(self) -> float:
-        """GJ [N m^2]."""
+        """Torsional stiffness GJ [N m^2]."""
         plies, t, y = self._plies()
         shear = np.array([ply.shear_modulus for ply in plies])
         slender = self.width / len(self.bands) / t.sum()
@@ -129,7 +162,7 @@ class StripSection:
 
     @property
     def mass_per_length(self) -> float:
-        """m [kg/m]."""
+        """Mass per length m [kg/m]."""
         plies, t, _ = self._plies()
         return float(self.width * sum(ply.density * ti for ply, ti in zip(plies, t, strict=True)))
 
@@ -170,15 +203,22 @@ class BeamSection:
     Parameters
     ----------
     bending_stiffness, mass_per_length : float
-        EI [N m^2] and m [kg/m], both above zero.
+        Bending stiffness EI [N m^2] and mass per length m [kg/m], both above zero.
     thickness : float
         Outer size in the plane of bending [m], with which bends are compared and films drawn.
     width : float, optional
         Outer size across that plane [m], for films; 0 means as large as `thickness`.
     axial_stiffness : float, optional
-        EA [N], which matters on curved centrelines only; 0 means 12 EI/thickness^2, as a strip has.
+        Stiffness EA [N], which matters on curved centrelines only; 0 means 12 EI/thickness^2, as a strip has.
     loss_factor : float
         Loss factor of stretching and bending [1].
+
+    Raises
+    ------
+    ValueError
+        If a value is out of range or not finite.
+    TypeError
+        If a value is not a number.
     """
 
     bending_stiffness: float
@@ -201,7 +241,7 @@ class BeamSection:
 
     @staticmethod
     def tube(*, material: Material, outer: float, inner: float = 0.0) -> BeamSection:
-        """Return a round tube of these diameters [m], or a solid rod."""
+        """Return the `BeamSection` of a round tube of these diameters [m], or of a solid rod."""
         require_kind("material", material, Material, "a Material, such as STEEL")
         require_within("outer", outer, "m", above=0)
         require_within("inner", inner, "m", low=0, below=outer)
@@ -216,12 +256,12 @@ class BeamSection:
 
     @property
     def total_thickness(self) -> float:
-        """The outer size in the plane of bending [m]."""
+        """Outer size in the plane of bending [m]."""
         return self.thickness
 
     @property
     def bands(self) -> tuple[tuple[float, float], ...]:
-        """The interval across the plane of bending that the section fills [m]."""
+        """Interval across the plane of bending that the section fills [m]."""
         return ((-0.5 * self.width, 0.5 * self.width),)
 
     @property

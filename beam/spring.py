@@ -85,8 +85,35 @@ class Tip:
 
     Parameters
     ----------
-    mass, rotary_inertia : float
-        Mass [kg], and moment of inertia about the z axis through the centreline [kg m^2], not negative.
+    mass : float
+        Mass [kg], not negative.
+    rotary_inertia : float
+        Moment of inertia about the z axis through the centreline [kg m^2], not negative.
+
+    Raises
+    ------
+    ValueError
+        If a value is negative or not finite.
+    TypeError
+        If a value is not a number.
+
+    See Also
+    --------
+    cantilever : A straight strip with the tip at its free end.
+    LeafSpring : A strip of any shape, with its tip at any arc length.
+    with_tip_mass : A modal model with another mass at its tip.
+
+    Examples
+    --------
+    A steel ball of radius 2 mm on a cantilever:
+
+    >>> from math import pi
+    >>> from beam import STEEL, StripSection, Tip, cantilever
+    >>> ball = Tip(mass=STEEL.density * 4 / 3 * pi * 2e-3**3)
+    >>> strip = StripSection(material=STEEL, width=12e-3, thickness=0.5e-3)
+    >>> spring = cantilever(length=0.15, section=strip, tip=ball)
+    >>> round(1e3 * spring.tip.mass, 3), round(1e3 * spring.strip_mass, 3)  # [g]
+    (0.262, 7.029)
     """
 
     mass: float = 0.0
@@ -104,9 +131,16 @@ class Readout:
     Parameters
     ----------
     at : float
-        Arc length [m].
+        Arc length [m], not negative.
     quantity : {"displacement", "rotation"}
         Displacement in the drive direction [m], or rotation of the strip [rad].
+
+    Raises
+    ------
+    ValueError
+        If `at` is negative or not finite, or the quantity is unknown.
+    TypeError
+        If `at` is not a number.
     """
 
     at: float
@@ -127,9 +161,9 @@ class LeafSpring:
     centreline : Centreline
         Curve of the strip at rest [m].
     sections : tuple of StripSection or BeamSection
-        One for each piece of the centreline.
-    supports : tuple of two supports
-        At s = 0 and at the far end: "clamped", "pinned", "guided" or "free".
+        One section for each piece of the centreline.
+    supports : tuple of two Support
+        Supports at s = 0 and at the far end: "clamped", "pinned", "guided" or "free".
     tip : Tip
         The body that meets the stop.
     tip_at : float
@@ -140,22 +174,25 @@ class LeafSpring:
         Points where the motion is measured, by name.
     points : mapping of str to a float or a tuple of two floats
         Further places that a stop or a force can act on, by name: their arc lengths, or their coordinates
-        (x, y) on the centreline [m].  They move, like the tip, in the drive direction.
-    between : mapping of float to a support
+        (x, y) on the centreline [m]. They move, like the tip, in the drive direction.
+    between : mapping of float to Support
         Supports between the ends, by their arc lengths [m].
 
     Raises
     ------
     ValueError
-        For a wrong number of sections, an unknown support, an arc length off the centreline, a tip that a
-        support holds, a drive of length 0, a bend tighter than half the thickness, or a point off the
-        centreline.
+        If the number of sections is wrong, a support is unknown, or it holds the tip or a point. Also if an
+        arc length or a point lies off the centreline, the drive has length 0, or a bend is tighter than half
+        the thickness.
+    TypeError
+        If a value is of another class than stated above.
 
     Warns
     -----
     SuspiciousValue
-        For a strip beyond `THICKEST`, `STOUTEST` or `SLENDEREST`, and a tip heavier than the strip. Also for
-        a width or a radius of gyration of the tip that exceeds the length from support to tip.
+        If a strip is thicker than 0.2 of its width or 0.1 of its length, or longer from support to tip than
+        5000 thicknesses. Also if the tip is heavier than the strip, or if the width or the tip's radius of
+        gyration exceeds the length from support to tip.
     """
 
     centreline: Centreline

@@ -46,7 +46,7 @@ class SpringMesh:
     triangles : ndarray of int, shape (n_triangles, 3)
         Corners of the surface of the ball; none without a ball.
     part : ndarray of int, shape (n_hexahedra + n_triangles,)
-        STRIP, LAYER or BALL.
+        Part of each cell: `beam.STRIP`, `beam.LAYER` or `beam.BALL`.
     """
 
     points: Array
@@ -95,10 +95,23 @@ def solid_spring(
     Parameters
     ----------
     modes : Modes
+        Modes from `natural_modes`.
     ball_radius : float, optional
         Radius of the ball [m]; no ball without it.
     points_per_element : int
         Rows of hexahedra along each element.
+
+    Returns
+    -------
+    SpringMesh
+        Points and cells at rest, and the displacement of each point in each mode.
+
+    Raises
+    ------
+    ValueError
+        If `ball_radius` is not positive, or `points_per_element` is not a whole number above zero.
+    TypeError
+        If `ball_radius` or `points_per_element` is not a number.
     """
     along = modes.displacement_along(points_per_element)
     line = modes.discretization.spring.centreline

@@ -26,8 +26,8 @@ PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
 
 FLOORS = {
     "beam": "parameters material section centreline spring spring_shapes pieces strip_element assembly modes "
-    "damping point matrices modal_model derivatives reduction frequency_equation large_amplitude "
-    "spring_mesh space export __init__",
+    "damping point matrices exciter residual_mode modal_model derivatives reduction frequency_equation "
+    "large_amplitude spring_mesh space export __init__",
     "contact": "errors machine speed_table restitution laws stop drive flight plausible oscillator "
     "impacts trajectory touch engine integrators simulation sensitivity one_mode maps virtual_motion "
     "collision orbits.families orbits.branches orbits.shooting orbits.observation orbits.__init__ __init__ "

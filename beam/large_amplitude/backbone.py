@@ -6,8 +6,8 @@ Free vibration of mode 1, the first that moves the tip, at the tip amplitude A [
 
 L [m] the length of the first straight run from s = 0, or of the whole centreline if none is straight. The
 motion is mode 1, A y_1 cos(q) with y_1 of unit tip displacement, and the response A^2 (y_0 + y_2 cos(2 q)) of
-the whole strip at rest and at twice the frequency. V is that of `finite_rotation` to the fourth order,
-with V_4 and the second-order force g = dV_3/dy at y_1:
+the whole strip at rest and at twice the frequency. The energy V of `finite_rotation` is taken to the fourth
+order, with V_4 and the second-order force g = dV_3/dy at y_1:
 
     K y_0 = -g/2,     (K - 4 W^2 M) y_2 = -g/2,     m = y_1^T M y_1,     W = 2 pi f_0,
 
@@ -15,7 +15,7 @@ and with the averages over a period at order A^4
 
     V = (3/8) V_4 + g^T (y_0/2 + y_2/4) + (y_0^T K y_0 + y_2^T K y_2/2)/2,     T = W^2 y_2^T M y_2,
 
-G. B. Whitham's averaged Lagrangian (Linear and Nonlinear Waves (1974), section 14) gives
+the averaged Lagrangian of G. B. Whitham (Linear and Nonlinear Waves (1974), section 14) gives
 
     kappa/L^2 = 4 V/(m W^2)  [elastic]  - 4 T/(m W^2)  [inertial].
 
@@ -36,14 +36,14 @@ from .finite_rotation import FiniteRotation
 
 @dataclass(frozen=True, kw_only=True)
 class Backbone:
-    """Dependence of the frequency of mode 1 on the amplitude.
+    """The dependence of the frequency of mode 1 on its amplitude.
 
     Parameters
     ----------
     elastic, inertial : float
-        Parts of kappa from strain energy and from kinetic energy [1].
+        Parts of the coefficient kappa from strain energy and from kinetic energy [1].
     length : float
-        Length L of the first straight run [m].
+        Length L of the first straight run [m], or of the whole centreline if none is straight.
     """
 
     elastic: float
@@ -52,7 +52,7 @@ class Backbone:
 
     @property
     def kappa(self) -> float:
-        """(f/f_0 - 1) (L/A)^2 for small A [1]: the sum of both parts."""
+        """Coefficient kappa = (f/f_0 - 1) (L/A)^2 for small A [1], the sum of both parts."""
         return self.elastic + self.inertial
 
     @property
@@ -72,13 +72,21 @@ def backbone_coefficient(spring: LeafSpring, elements: int | Sequence[int] | Non
     Parameters
     ----------
     spring : LeafSpring
+        The spring that vibrates.
     elements : int or sequence of int, optional
-        Elements on every piece, or one number for each, as for ``beam.assemble``.
+        Elements on every piece, or one number for each, as for `beam.assemble`.
+
+    Returns
+    -------
+    Backbone
+        The coefficient kappa [1] in f = f_0 (1 + kappa (A/L)^2), in two parts, and the length L [m].
 
     Raises
     ------
     ValueError
-        If the supports leave a rigid motion, or none of the first modes moves the tip.
+        If the supports leave a rigid motion, none of the first modes moves the tip, or `elements` is wrong.
+    TypeError
+        If `spring` is not a LeafSpring.
     """
     model = FiniteRotation.of(spring, elements)
     stiffness, mass = model.linear.stiffness, model.linear.mass

@@ -51,12 +51,14 @@ def _stretched(a: Array, b: Array) -> Array:
 class FiniteRotation:
     """A leaf spring in n_dofs degrees of freedom, without damping: M x'' + f(x) = -b z'' + tip * force.
 
+    The class method `of` makes it from a `LeafSpring`.
+
     Parameters
     ----------
     linear : Discretization
         Model of small motions: K = df/dx at rest, M, b and the row of the tip.
     strains : tuple of three sparse arrays, shape (n_points, n_dofs)
-        Matrices of a, b, b' at Gauss's points of all elements.
+        Matrices that give a, b [1] and b' [1/m] at Gauss's points of all elements, as ``strain @ x``.
     axial, bending : ndarray, shape (n_points,)
         EA and EI there, times the weight of the point in the integral [N m, N m^3].
     """
@@ -68,7 +70,7 @@ class FiniteRotation:
 
     @classmethod
     def of(cls, spring: LeafSpring, elements: int | Sequence[int] | None = None) -> FiniteRotation:
-        """Return the model of a `spring`, with `elements` as for `assemble`."""
+        """Return the model of a `LeafSpring`, with `elements` as for `beam.assemble`."""
         linear = assemble(spring, elements, shortening=True)
         kinds, stiff = [], []
         for piece in linear.pieces:
@@ -81,9 +83,10 @@ class FiniteRotation:
 
     @cached_property
     def first_mode(self) -> tuple[float, Array]:
-        """omega_1 [rad/s] and shape, of unit tip displacement, of the first mode that moves the tip.
+        """Angular frequency [rad/s] and shape [1], shape (n_dofs,), of the first mode that moves the tip.
 
-        ValueError if the supports leave a rigid motion, or none of the first ten modes moves the tip.
+        The shape has unit tip displacement. ValueError if the supports leave a rigid motion, or none of the
+        first ten modes moves the tip.
         """
         rigid = self.linear.spring.rigid_motions
         require(not rigid, "supports", f"leave {rigid} motions without strain [no unit]; none may be left")

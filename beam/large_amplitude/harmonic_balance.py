@@ -10,8 +10,8 @@ zero), or both parts of Z of a driven one. Forces and their derivatives are samp
 Cameron and J. H. Griffin, J. Appl. Mech. 56 (1989) 149).
 
 Deviations are e^(lambda t) sum_k d_k e^(i k w t). Their lambda make the matrix of the equations singular if
-i k w + lambda replaces i k w (G. W. Hill's method). The effective period is that of the single linear mode
-under the same drive whose deviations have the same frequency as in mode 1.
+i k w + lambda replaces i k w (G. W. Hill's method). The effective period belongs to the single linear
+mode under the same drive whose deviations have the same frequency as in mode 1.
 """
 
 from dataclasses import dataclass, replace
@@ -38,6 +38,7 @@ class PeriodicMotion:
     Parameters
     ----------
     model : FiniteRotation
+        The spring that moves.
     omega : float
         Angular frequency w [rad/s].
     decay_rate : float
@@ -45,7 +46,7 @@ class PeriodicMotion:
     coefficients : ndarray of complex, shape (2 H + 1, n_dofs)
         Fourier coefficients c_k, k = -H ... H [m].
     drive : complex
-        Z [m/s^2]; the acceleration amplitude of the base is 2 |Z|.
+        Coefficient Z of the acceleration of the base [m/s^2]; its amplitude is ``2 abs(Z)``.
     """
 
     model: FiniteRotation
@@ -93,7 +94,7 @@ class PeriodicMotion:
         return found + [part.conj() for part in found[:0:-1]]  # the densities are real
 
     def derivative(self, growth: complex = 0.0) -> csc_array:
-        """Return the matrix of small deviations that grow as e^(growth t), all harmonics end to end."""
+        """Return the matrix [N/m] of small deviations that grow as e^(growth t), all harmonics end to end."""
         rate = 1j * self.harmonics * self.omega + growth
         inertia = [factor * self.model.linear.mass for factor in rate * (rate + self.decay_rate)]
         rows = [
@@ -122,7 +123,7 @@ class PeriodicMotion:
 
     @property
     def effective_period(self) -> float:
-        """2 pi/(w + Im lambda) [s]."""
+        """Effective period 2 pi/(w + Im lambda) [s]."""
         return float(2.0 * np.pi / (self.omega + self.exponent().imag))
 
 
@@ -139,6 +140,7 @@ def periodic_motion(
     Parameters
     ----------
     model : FiniteRotation
+        The spring that moves.
     amplitude : float
         Displacement of the tip at its turning point [m], not zero.
     frequency : float, optional
@@ -148,10 +150,19 @@ def periodic_motion(
     harmonics : int
         Highest harmonic H.
 
+    Returns
+    -------
+    PeriodicMotion
+        Frequency, Fourier coefficients and drive of the motion.
+
     Raises
     ------
     ArithmeticError
         If Newton's method, which starts from the linear motion, does not converge.
+    ValueError
+        If a value is out of range, the supports leave a rigid motion, or no mode moves the tip.
+    TypeError
+        If `model` is not a FiniteRotation, or a value is not a number.
     """
     require_kind("model", model, FiniteRotation, "a FiniteRotation")
     size = require_within("amplitude", amplitude, "m")

@@ -1,9 +1,11 @@
 """Vibration of a strip in space: bending both ways, twist, and a tip off the centroid of its section.
 
-section   `SpatialSection`: strips `upright` and `flat`, a `channel`
-spring    `SpatialSpring`, a strip between two supports, with its tip
-element   strains and matrices of one piece that moves out of the plane
-modes     `spatial_modes`, the natural modes in the plane and out of it
+Its files are
+
+    section   `SpatialSection`: strips `upright` and `flat`, a `channel`
+    spring    `SpatialSpring`, a strip between two supports, with its tip
+    element   strains and matrices of one piece that moves out of the plane
+    modes     `spatial_modes`, the natural modes in the plane and out of it
 """
 
 from .modes import SpatialModes, spatial_modes

@@ -35,11 +35,14 @@ from .spring import SpatialSpring
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SpatialModes:
-    """Mass-normalised modes, lowest first, each with phi >= 0 (the sign is arbitrary where phi is rounding).
+    """Mass-normalised modes of a strip in space, lowest first.
+
+    The sign of each mode is fixed by phi >= 0. It is arbitrary where phi is rounding.
 
     Parameters
     ----------
     spring : SpatialSpring
+        The spring that vibrates.
     omega : ndarray, shape (n_modes,)
         Angular frequencies [rad/s]; near 0 for rigid motions.
     phi, participation : ndarray, shape (n_modes,)
@@ -49,7 +52,7 @@ class SpatialModes:
     out_of_plane : ndarray, shape (n_modes,)
         Share of the strain energy in bending out of the plane and in twist [1].
     families : tuple of two tuples of Piece
-        Meshed pieces for the motion in the plane and for that out of it.
+        Meshed pieces for the motion in the plane and for the motion out of it.
     unknowns : tuple of two ndarrays, shape (unknowns of all pieces, n_modes)
         Unknowns of the pieces of each family in the modes.
     """
@@ -70,8 +73,11 @@ class SpatialModes:
         return self.omega / (2.0 * np.pi)
 
     def along(self, points_per_element: int = 4) -> tuple[Array, ...]:
-        """Return arc lengths [m] (n_points,), points [m] (n_points, 3), and displacements and rotations along
-        and about x, y, z (n_modes, n_points, 3), at equal steps in each element."""
+        """Return the shapes along the centreline, at equal steps in each element.
+
+        The arrays are arc lengths [m] (n_points,), points at rest [m] (n_points, 3), and displacements and
+        rotations along and about x, y, z (n_modes, n_points, 3).
+        """
         line = self.spring.centreline
         pairs = zip(self.families, self.unknowns, strict=True)
         (s, plane), (_, side) = (motion_along(line, *pair, points_per_element) for pair in pairs)
@@ -81,15 +87,29 @@ class SpatialModes:
 def spatial_modes(
     spring: SpatialSpring, count: int, elements: int | Sequence[int] | None = None
 ) -> SpatialModes:
-    """Return the `count` lowest modes.
+    """Return the lowest natural modes of a strip in space.
 
     Parameters
     ----------
     spring : SpatialSpring
+        The spring that vibrates.
     count : int
+        Number of modes, at least 1.
     elements : int or sequence of int, optional
         Elements on every piece, or one number for each. By default the straight pieces share 80 by length,
         and an arc has 32 for each half turn.
+
+    Returns
+    -------
+    SpatialModes
+        Frequencies and mass-normalised shapes, lowest first.
+
+    Raises
+    ------
+    ValueError
+        If `count` or `elements` is out of range, or `elements` does not hold one number for each piece.
+    TypeError
+        If `spring` is not a SpatialSpring, or `count` or `elements` is not a number.
     """
     require_kind("spring", spring, SpatialSpring, "a SpatialSpring")
     line, c, e = spring.centreline, np.array(spring.tip_offset), np.array(spring.drive)

@@ -42,16 +42,29 @@ from ..section import StripSection
 
 @dataclass(frozen=True, kw_only=True)
 class SpatialSection:
-    """Stiffness and inertia of a section in space; the docstring of the module defines the axes.
+    """Stiffness and inertia of a section in space.
+
+    The frame of the section is (n, z): n lies in the plane of the centreline, z across it.
 
     Parameters
     ----------
-    axial_stiffness, in_plane_stiffness, out_of_plane_stiffness, torsional_stiffness : float
-        EA [N], and EI_z, EI_n and GJ [N m^2], positive.
+    axial_stiffness : float
+        Axial stiffness EA [N], positive.
+    in_plane_stiffness, out_of_plane_stiffness, torsional_stiffness : float
+        Stiffness EI_z of bending in the plane, EI_n of bending out of it, GJ of twist [N m^2], positive.
     mass_per_length, polar_inertia : float
-        m [kg/m] and I [kg m], positive.
-    warping_stiffness, shear_offset : float
-        EG [N m^4] and a [m], not negative; a is 0 on an arc.
+        Mass per length m [kg/m], and moment I about the centroid per length [kg m], positive.
+    warping_stiffness : float
+        Stiffness EG, Young's modulus times the warping constant [N m^4], not negative.
+    shear_offset : float
+        Distance a of the centroid from the shear centre, along n [m], not negative; 0 on an arc.
+
+    Raises
+    ------
+    ValueError
+        If a value is out of range or not finite.
+    TypeError
+        If a value is not a number.
     """
 
     axial_stiffness: float
@@ -77,12 +90,30 @@ class SpatialSection:
 
     @property
     def bending_stiffness(self) -> float:
-        """EI_z [N m^2], under its name in `beam.StripSection`."""
+        """Bending stiffness EI_z [N m^2], under its name in `beam.StripSection`."""
         return self.in_plane_stiffness
 
 
 def upright(section: StripSection) -> SpatialSection:
-    """Return the strip with its width out of the plane of the centreline."""
+    """Return a strip with its width out of the plane of the centreline.
+
+    Parameters
+    ----------
+    section : StripSection
+        Section of the strip, without slot.
+
+    Returns
+    -------
+    SpatialSection
+        The stiffness and inertia of the strip in space.
+
+    Raises
+    ------
+    ValueError
+        If the section has a slot.
+    TypeError
+        If `section` is not a StripSection.
+    """
     require_kind("section", section, StripSection, "a StripSection")
     require(section.slot == 0.0, "slot", f"is {section.slot} m; legs side by side need a strip each here")
     b, t, m = section.width, section.total_thickness, section.mass_per_length
@@ -98,7 +129,25 @@ def upright(section: StripSection) -> SpatialSection:
 
 
 def flat(section: StripSection) -> SpatialSection:
-    """Return the strip with its width in the plane of the centreline."""
+    """Return a strip with its width in the plane of the centreline.
+
+    Parameters
+    ----------
+    section : StripSection
+        Section of the strip, without slot.
+
+    Returns
+    -------
+    SpatialSection
+        The stiffness and inertia of the strip in space.
+
+    Raises
+    ------
+    ValueError
+        If the section has a slot.
+    TypeError
+        If `section` is not a StripSection.
+    """
     up = upright(section)
     easy, stiff = up.in_plane_stiffness, up.out_of_plane_stiffness
     return replace(up, in_plane_stiffness=stiff, out_of_plane_stiffness=easy)
@@ -110,12 +159,25 @@ def channel(*, material: Material, width: float, flange: float, thickness: float
     Parameters
     ----------
     material : Material
+        Material of the sheet.
     width : float
-        b [m], positive, outer, over both flanges.
+        Outer width b over both flanges [m], positive.
     flange : float
-        h [m], not negative: by how much the flanges stand out of the web.
+        Length h by which the flanges stand out of the web [m], not negative.
     thickness : float
-        t [m] of the sheet, positive, below half of the width.
+        Thickness t of the sheet [m], positive, at most half of the width.
+
+    Returns
+    -------
+    SpatialSection
+        The stiffness and inertia of the channel in space.
+
+    Raises
+    ------
+    ValueError
+        If a length is out of range, or the thickness exceeds half of the width.
+    TypeError
+        If `material` is not a Material, or a length is not a number.
     """
     require_kind("material", material, Material, "a Material, such as BRASS")
     require_within("width", width, "m", above=0)

@@ -18,20 +18,32 @@ Vector = tuple[float, float, float]
 
 @dataclass(frozen=True, kw_only=True)
 class SpatialSpring:
-    """A strip that follows a plane centreline between two supports.
+    """A strip in space that follows a plane centreline between two supports.
 
     Parameters
     ----------
-    centreline, supports, tip_at
-        As for `beam.LeafSpring`.
+    centreline : Centreline
+        Curve of the centroids at rest [m].
     sections : tuple of SpatialSection
-        One for each piece of the centreline.
+        One section for each piece of the centreline.
+    supports : tuple of two Support
+        Supports at s = 0 and at the far end: "clamped", "pinned", "guided" or "free".
     tip : Tip
-        Its rotary inertia counts about every axis.
+        The body that meets the stop. Its rotary inertia counts about every axis.
+    tip_at : float
+        Arc length of the section that carries the tip [m].
     tip_offset : tuple of three floats
-        c, from the centroid of the section there to the tip, along x, y and z [m].
+        Vector c from the centroid of that section to the tip, along x, y and z [m].
     drive : tuple of three floats
         Direction e of the base motion [1]; stored as a unit vector.
+
+    Raises
+    ------
+    ValueError
+        If the number of sections is wrong, a support is unknown or holds the tip, or `tip_at` is off the
+        centreline. Also if the drive has length 0, or a section with a shear offset is on an arc.
+    TypeError
+        If a value is of another class than stated above.
     """
 
     centreline: Centreline
