@@ -25,11 +25,6 @@ from .parameters import Array, require, require_kind, require_within
 @runtime_checkable
 class Damping(Protocol):
     """A rule that gives each mode its decay rate: any class with the method `decay_rates`.
-
-    Parameters
-    ----------
-    *args, **kwargs
-        Arguments of the class that implements the rule. The protocol has none of its own.
     """
 
     def decay_rates(self, modes: Modes) -> Array:
