@@ -141,8 +141,8 @@ class HuntCrossley(ContactLaw):
     The law is used as its authors published it.  At d' < -1/chi the force pulls.  A free mass never leaves so
     fast; a heavily damped tip that is torn off the stop can.
 
-    A free mass leaves with the speed v_out of the equation a - ln(1 + a) = -b - ln(1 - b), in which
-    a = chi v_in and b = chi v_out.
+    Let v_in be the approach speed of a free mass and v_out the speed with which it leaves.  Then
+    a = chi v_in and b = chi v_out obey the equation ``a - log(1 + a) = -b - log(1 - b)``.
 
     Examples
     --------

@@ -222,10 +222,10 @@ class LinearContact(ContactLaw):
     def with_restitution(*, stiffness: float, restitution: float, mass: float) -> LinearContact:
         """Return the law under which a free `mass` [kg] leaves with `restitution` times its approach speed.
 
-        `restitution` lies above 0 and is at most 1, and holds at every speed: c = 2 zeta sqrt(k m), with
-        the mass m and zeta of ``contact.damping_ratio``.  The tip of a modal model meets the stop with the
-        mass 1/sum phi^2 of its modes; ``ModalModel.tip_mass`` is the limit for all modes.  If its modes move
-        during the contact, the tip leaves with another restitution than the free mass.
+        `restitution` lies above 0 and is at most 1, and holds at every speed.  The dashpot of a mass m is
+        c = 2 zeta sqrt(k m), with zeta of ``contact.damping_ratio``.  The tip of a modal model meets the stop
+        with the mass 1/sum phi^2 of its modes; ``ModalModel.tip_mass`` is the limit for all modes.  If its
+        modes move during the contact, the tip leaves with another restitution than the free mass.
         """
         elastic = LinearContact(stiffness=stiffness)
         mass = require_within("mass", mass, "kg", above=0)

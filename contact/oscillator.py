@@ -58,8 +58,8 @@ class ImpactOscillator:
     ------
     ValueError
         If not exactly one of `stop` and `stops` is given, a stop cannot be reached, or two stops lie at one
-        place.  If a driven spring has a gap of zero, the drive has the frequency of an undamped mode, or the
-        load does not fit the model.
+        place.  If a driven spring has a gap of zero, or the frequency of the drive is that of an undamped
+        mode.  If the load does not fit the model, or `simultaneous` is another word.
     TypeError
         If an argument is of another kind, or the law of a stop holds for one mode and the model has more.
 
@@ -225,7 +225,7 @@ class ImpactOscillator:
         refuse_drift(self.model, self.load)
 
     def drive_at(self, reach: float, rate: float) -> tuple[float, float]:
-        """Return the base amplitude [m] and the drive time [s] at which the steady tip motion has the
+        """Return the base amplitude [m] and the drive time [s] that give the steady tip motion the
         displacement `reach` [m] and the velocity `rate` [m/s]."""
         w, height = self.driven.angular_frequency, reach - (self.mean_height + self.stop.gap)
         # x = x_0 + Z Im(H e^{i w t}), x' = Z w Re(H e^{i w t}), so Z e^{i w t} = C + i S with

@@ -16,8 +16,9 @@ MOST_STORED = 2.0**28  # largest number of values in the strobes of one run: 2 G
 class Plan:
     """Start, end and sample times of a simulation.
 
-    `simulate` makes it for the method.  It keeps a time as the number of a stretch, from one strobe to the
-    next, and as a clock, the time since the strobe that begins the stretch.
+    `contact.simulate` makes it for the method.  Each time is kept as two numbers.  The first is the number of
+    a stretch, which goes from one strobe to the next.  The second is a clock, the time since the strobe that
+    begins the stretch.
 
     Parameters
     ----------

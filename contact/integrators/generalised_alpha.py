@@ -262,7 +262,7 @@ class GeneralisedAlpha(FixedStep):
     def newmark(
         *, step: float, beta: float = 0.25, gamma: float = 0.5, beyond_limit: bool = False
     ) -> GeneralisedAlpha:
-        """Return Newmark's method: `beta` 1/4 is the trapezoidal rule, 1/6 linear acceleration, 0 explicit."""
+        """Return Newmark's method: beta 1/4 is the trapezoidal rule, 1/6 linear acceleration, 0 explicit."""
         return GeneralisedAlpha(step=step, beta=beta, gamma=gamma, beyond_limit=beyond_limit)
 
     @staticmethod

@@ -37,9 +37,9 @@ class Integrator:
     certified : bool
         Whether the method proves that no touch is missed.
     accuracy : float
-        Bound of the relative error of the state after a collision [1], for an exact method and contacts up to
-        1e7 times as stiff as the spring.  The error grows as the square root of the stiffness.  The bound is
-        NaN if a step or a tolerance sets the error.
+        Bound of the relative error of the state after a collision with an exact method [1].  It holds for
+        contacts up to 1e7 times as stiff as the spring; the error grows as the square root of the stiffness.
+        The bound is NaN if a step or a tolerance sets the error.
     """
 
     name: ClassVar[str]

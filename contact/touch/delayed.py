@@ -75,7 +75,7 @@ class DelayedRestitution(ContactLaw):
     -----
     The tip keeps waiting whatever force pulls at it.  Let v be its approach speed, and a its deceleration at
     the touch.  Without the wall the tip would be back after the time ``2 * v / a``.  A longer wait holds the
-    tip against the pull and adds energy to the motion.  Orbits of period 1 then appear far below grazing; they
+    tip against the pull and adds energy to the motion.  Orbits of period 1 then appear far below grazing, and
     are stable if the wait is long (``tests/contact/test_delayed_orbits.py``).
 
     Under a constant delay this happens in every touch slower than ``a * delay / 2``, and a touch of vanishing

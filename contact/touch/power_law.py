@@ -91,9 +91,9 @@ class PowerContact(ContactLaw):
     ) -> PowerContact:
         """Return the law under which a free `mass` [kg] leaves with `restitution` times its approach speed.
 
-        `restitution` lies above 0 and is at most 1, and holds at every speed: c = 2 zeta sqrt((p + 1)/2 k m)
-        with the mass m and zeta of ``contact.damping_ratio``.  ``LinearContact.with_restitution`` says which
-        mass a tip has.
+        `restitution` lies above 0 and is at most 1, and holds at every speed.  The dashpot of a mass m is
+        c = 2 zeta sqrt((p + 1)/2 k m), with zeta of ``contact.damping_ratio``.  The docstring of
+        ``LinearContact.with_restitution`` says which mass a tip has.
         """
         elastic = PowerContact(stiffness=stiffness, exponent=exponent)
         mass = require_within("mass", mass, "kg", above=0)
