@@ -85,6 +85,18 @@ class Collision:
     first_collision : The first collision of a motion.
     Impacts : The touches of a motion, one by one.
 
+    Notes
+    -----
+    The virtual motion of the tip is its steady forced motion plus the free motion of mode 1, as if there were
+    no stop.  The incoming one continues the motion before the collision, the outgoing one the motion after it.
+
+    - t_in is the time at which the incoming virtual motion crosses the gap upwards, and v_in its velocity.
+    - t_out is the time at which the outgoing virtual motion crosses the gap downwards.
+    - The restitution is the speed at t_out over v_in.
+
+    Restitution and delay do not exist if the collision is `forced_by_ringing`, or if the outgoing virtual
+    motion does not reach the gap.
+
     Examples
     --------
     A soft stop: mode 1 comes back with less speed, after a time in contact:

@@ -39,7 +39,7 @@ class HarmonicDrive:
 
     Examples
     --------
-    The period, and the base displacement in the rest position and a quarter of a period later:
+    The period, and the base displacement at time zero and a quarter of a period later:
 
     >>> from contact import HarmonicDrive
     >>> drive = HarmonicDrive(frequency=22.2, amplitude=1.5e-3)

@@ -12,8 +12,8 @@ from contextlib import suppress
 class ContactError(RuntimeError):
     """A computation of impacts that could not be finished.
 
-    All errors of this kind keep time and place of the failure.  They are zero where a search for an orbit has
-    failed, which has none.
+    An error keeps the time and the place of the failure.  Its numbers are zero where a search for an orbit
+    has failed.
 
     Parameters
     ----------

@@ -165,22 +165,22 @@ class Impacts:
 
     @cached_property
     def displacement_start(self) -> np.ndarray:
-        """Modal displacements just before the touch [m kg^0.5], shape (n_impacts, n_modes)."""
+        """Modal displacements just before the touch [kg^(1/2) m], shape (n_impacts, n_modes)."""
         return self._steady[0][0] + self.deviations_start[:, 0]
 
     @cached_property
     def velocity_start(self) -> np.ndarray:
-        """Modal velocities just before the touch [m kg^0.5 / s], shape (n_impacts, n_modes)."""
+        """Modal velocities just before the touch [kg^(1/2) m/s], shape (n_impacts, n_modes)."""
         return self._steady[0][1] + self.deviations_start[:, 1]
 
     @cached_property
     def displacement_end(self) -> np.ndarray:
-        """Modal displacements just after the release [m kg^0.5], shape (n_impacts, n_modes)."""
+        """Modal displacements just after the release [kg^(1/2) m], shape (n_impacts, n_modes)."""
         return self._steady[1][0] + self.deviations_end[:, 0]
 
     @cached_property
     def velocity_end(self) -> np.ndarray:
-        """Modal velocities just after the release [m kg^0.5 / s], shape (n_impacts, n_modes)."""
+        """Modal velocities just after the release [kg^(1/2) m/s], shape (n_impacts, n_modes)."""
         return self._steady[1][1] + self.deviations_end[:, 1]
 
 

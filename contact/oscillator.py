@@ -52,7 +52,7 @@ class ImpactOscillator:
     simultaneous : {"moreau", "sequential"}
         Rule if several stops of Newton's law are hit at one instant, or one while a point rests on another:
         Moreau's law for all of them, or one after the other, the fastest approach first
-        (``contact.touch.impulses``).  The page on several stops compares them.
+        (``contact.touch.impulses``).  ``docs/several_stops.md`` compares the two.
 
     Raises
     ------
@@ -233,7 +233,7 @@ class ImpactOscillator:
         return abs(phasor), float(np.angle(phasor) % (2.0 * np.pi)) / w
 
     def grazing_amplitude(self) -> float:
-        """Return the base amplitude at which the steady motion just touches the first stop [m]."""
+        """Return the lowest base amplitude at which the steady motion just touches a stop [m]."""
         self._require_steady()
         return lowest_grazing(self._at_one_metre)
 

@@ -107,8 +107,8 @@ def restitution_from_bounces(times: ArrayLike) -> MeasuredRestitution:
     Notes
     -----
     Each interval between bounces is the one before it times the restitution.  The times are therefore
-    ``t_n = t_0 + T (1 + e + ... + e^(n-1))``.  The three unknowns t_0, T and e are fitted by least squares.  This
-    is the best estimate if the times have independent errors of one size.
+    ``t_n = t_0 + T (1 + e + ... + e^(n-1))``.  The three unknowns t_0, T and e are fitted by least squares.
+    This is the best estimate if the times have independent errors of one size.
 
     Examples
     --------

@@ -1,6 +1,6 @@
 """States and motions as named arrays.
 
-A modal state is a displacement q_k [m kg^0.5] and a velocity q_k' [m kg^0.5 / s] of each mode.
+A modal state is a displacement q_k [kg^(1/2) m] and a velocity q_k' [kg^(1/2) m/s] of each mode.
 ``ImpactOscillator.tip`` gives the displacement of the tip relative to the base.
 """
 
@@ -98,7 +98,8 @@ class State:
     time : float
         Time since the start of the drive, base at z = Z sin(2 pi f time) [s].
     regime : Regime, int or tuple of Regime
-        Regime of the stop `stop`.  If several stops act at the same time, the regime of each.
+        Regime of the stop `stop`, or its number.  If several stops act at the same time, the regime of each
+        stop of the oscillator.
     wait, rebound : float
         Time still to wait [s], and velocity with which the tip then leaves [m/s], in the regime WAITING.
     stop : int
