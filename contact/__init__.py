@@ -29,19 +29,22 @@ Words
 
 The files: the problem and its answer
     ``drive``           base motion, `HarmonicDrive`
-    ``laws``            contact laws: `NewtonRestitution` (at once), `LinearContact`, `HertzContact`,
-                        `HuntCrossley` (forces); `PowerContact` and `DelayedRestitution` (one mode) stand
-                        in ``touch``
+    ``laws``            contact laws: `NewtonRestitution` (at once), `LinearContact` (a force)
+    ``hertz``           forces of a ball: `HertzContact`, `HuntCrossley`; the laws `PowerContact` and
+                        `DelayedRestitution` (one mode) stand in ``touch``
     ``speed_table``     functions of the approach speed, such as a restitution, as tables
     ``restitution``     `damping_ratio` of a restitution; `restitution_from_bounces`
     ``stop``            `Stop`: a gap, a law, and where it lies
     ``plausible``       warnings of sizes that no spring has
+    ``steady_response`` the motion without contact, and the drive amplitude at which it grazes
     ``oscillator``      `ImpactOscillator`: a ``beam.ModalModel``, stops and a drive; the equation of motion
     ``impacts``         `Impacts`: every touch of a motion
     ``trajectory``      `State`, `Trajectory`
     ``simulation``      `simulate`: a motion with every impact, exact or by a method with a time step
     ``virtual_motion``  the motion of mode 1 as if there were no stop
-    ``collision``       `collisions`: the effect of each collision on mode 1; `first_collision`
+    ``collision_numbers``
+                        `Collision`: the effect of one collision on mode 1
+    ``collision``       `collisions` of a trajectory; `first_collision`
     ``errors``          the `ContactError` family, for motions that cannot be followed
     ``warm_up``         a program that compiles all kernels once: ``python -m contact.warm_up``
 
@@ -65,7 +68,8 @@ A motion that cannot be followed raises a `ContactError` (`UnresolvedCrossing`, 
 mass-normalised (q in m kg^0.5).  A module with physics opens with its equations.
 """
 
-from contact.collision import Collision, before_collision, collisions, first_collision
+from contact.collision import before_collision, collisions, first_collision
+from contact.collision_numbers import Collision
 from contact.drive import HarmonicDrive
 from contact.errors import (
     BranchEnded,
@@ -79,8 +83,9 @@ from contact.errors import (
     TouchedAtOnce,
     UnresolvedCrossing,
 )
+from contact.hertz import HertzContact, HuntCrossley
 from contact.impacts import Impacts
-from contact.laws import ContactLaw, HertzContact, HuntCrossley, LinearContact, NewtonRestitution
+from contact.laws import ContactLaw, LinearContact, NewtonRestitution
 from contact.maps.nonlinear_mode import NonlinearMode
 from contact.maps.nordmark import NordmarkMap
 from contact.maps.nordmark_bands import Band, frequency_band

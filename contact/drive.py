@@ -16,7 +16,7 @@ from beam.parameters import final, require_array, require_within
 @final
 @dataclass(frozen=True, kw_only=True)
 class HarmonicDrive:
-    """Base motion ``amplitude * sin(2 pi frequency t)``.
+    """Harmonic motion of the base, ``amplitude * sin(2 pi frequency t)``.
 
     Parameters
     ----------
@@ -24,6 +24,29 @@ class HarmonicDrive:
         Drive frequency, above zero [Hz].
     amplitude : float
         Amplitude of the base displacement, zero or more [m].
+
+    Raises
+    ------
+    ValueError
+        If the frequency is not above zero, the amplitude is negative, or one of them is not finite.
+    TypeError
+        If one of them is no number.
+
+    See Also
+    --------
+    ImpactOscillator : A spring on a moving base, with stops.
+    ImpactOscillator.with_excess : The same oscillator with an amplitude relative to grazing.
+
+    Examples
+    --------
+    The period, and the base displacement at time zero and a quarter of a period later:
+
+    >>> from contact import HarmonicDrive
+    >>> drive = HarmonicDrive(frequency=22.2, amplitude=1.5e-3)
+    >>> print(f"{1e3 * drive.period:.2f} ms")
+    45.05 ms
+    >>> print(1e3 * drive.displacement([0.0, 0.25 * drive.period]).round(6), "mm")
+    [0.  1.5] mm
     """
 
     frequency: float
@@ -35,20 +58,20 @@ class HarmonicDrive:
 
     @property
     def angular_frequency(self) -> float:
-        """2 pi f [rad/s]."""
+        """Angular frequency 2 pi f [rad/s]."""
         return 2.0 * math.pi * self.frequency
 
     @property
     def period(self) -> float:
-        """1/f [s]."""
+        """Drive period 1/f [s]."""
         return 1.0 / self.frequency
 
     def components(self, time: float) -> np.ndarray:
-        """(S, C) = amplitude (sin, cos)(2 pi f time), the sine and cosine part of the drive at a time [m]."""
+        """Return (S, C) = amplitude (sin, cos)(2 pi f time) at a `time` [s], shape (2,) [m]."""
         angle = self.angular_frequency * time
         return self.amplitude * np.array([math.sin(angle), math.cos(angle)])
 
     def displacement(self, time: float | np.ndarray) -> np.ndarray:
-        """Base displacement at `time` [s], same shape [m]."""
+        """Return the base displacement [m] at `time` [s], with the shape of `time`."""
         times = require_array("time", time, "s", words="a time or an array of times")
         return self.amplitude * np.sin(self.angular_frequency * times)

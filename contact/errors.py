@@ -12,11 +12,19 @@ from contextlib import suppress
 class ContactError(RuntimeError):
     """A computation of impacts that could not be finished.
 
-    Attributes
+    An error keeps the time and the place of the failure.  Its numbers are zero where a search for an orbit
+    has failed.
+
+    Parameters
     ----------
-    time, gap, velocity : float
-        Time since the start of the run [s], distance of the tip from the stop, positive when the tip is free
-        [m], and velocity of the tip towards the stop [m/s].  A search for an orbit has none: they are zero.
+    time : float
+        Time of the failure since the start of the drive [s].
+    gap : float
+        Distance of the tip from the stop, positive when the tip is free [m].
+    velocity : float
+        Velocity of the tip towards the stop [m/s].
+    detail : str
+        Words that end the message.
     """
 
     reason = "the computation could not be finished"
@@ -39,52 +47,126 @@ class ContactError(RuntimeError):
 
 
 class UnresolvedCrossing(ContactError):
-    """A part of the motion could be proved neither free nor touching."""
+    """A part of the motion that could be proved neither free nor touching.
+
+    Parameters
+    ----------
+    time, gap, velocity : float
+        Time since the start of the drive [s], distance of the tip from the stop [m] and velocity of the tip
+        towards the stop [m/s].
+    detail : str
+        Words that end the message.
+    """
 
     reason = "a crossing of the stop could be neither excluded nor located"
 
 
 class TouchedAtOnce(ContactError):
-    """Two stops are touched at once, and the law of one is followed alone; or more than eight act."""
+    """Two stops touched at once under a law that is followed alone, or more than eight that act.
+
+    Parameters
+    ----------
+    time, gap, velocity : float
+        Time since the start of the drive [s], distance of the tip from the stop [m] and velocity of the tip
+        towards the stop [m/s].
+    detail : str
+        Words that end the message.
+    """
 
     reason = "two stops are touched at once, which is not followed under their laws,"
 
 
 class Chatter(ContactError):
-    """More impacts in one drive period than the bound allows."""
+    """More impacts in one drive period than the bound allows.
+
+    Parameters
+    ----------
+    time, gap, velocity : float
+        Time since the start of the drive [s], distance of the tip from the stop [m] and velocity of the tip
+        towards the stop [m/s].
+    detail : str
+        Words that end the message.
+    """
 
     reason = "impacts accumulate"
 
 
 class ContactTooStiff(ContactError):
-    """A contact needs more steps than the bound allows."""
+    """A contact that needs more steps than the bound allows.
+
+    Parameters
+    ----------
+    time, gap, velocity : float
+        Time since the start of the drive [s], distance of the tip from the stop [m] and velocity of the tip
+        towards the stop [m/s].
+    detail : str
+        Words that end the message.
+    """
 
     reason = "a contact needs more integration steps than the bound allows"
 
 
 class StepTooLarge(ContactError):
-    """A method's time step is beyond its limit of stability, in flight or in the contact at hand."""
+    """A time step beyond the limit of stability of its method, in flight or in the contact at hand.
+
+    Parameters
+    ----------
+    time, gap, velocity : float
+        Time since the start of the drive [s], distance of the tip from the stop [m] and velocity of the tip
+        towards the stop [m/s].
+    detail : str
+        Words that end the message.
+    """
 
     reason = "the time step is beyond the limit of stability"
 
 
 class Diverged(ContactError):
-    """A discretised motion has grown without bound, or one mode beyond the range of its cubic terms."""
+    """A discretised motion that has grown without bound, or one mode beyond the range of its cubic terms.
+
+    Parameters
+    ----------
+    time, gap, velocity : float
+        Time since the start of the drive [s], distance of the tip from the stop [m] and velocity of the tip
+        towards the stop [m/s].
+    detail : str
+        Words that end the message.
+    """
 
     reason = "the motion grew without bound"
 
 
 class NotPeriodic(ContactError):
-    """An orbit that should be periodic is not."""
+    """An orbit that should be periodic and is not.
+
+    Parameters
+    ----------
+    time, gap, velocity : float
+        Time since the start of the drive [s], distance of the tip from the stop [m] and velocity of the tip
+        towards the stop [m/s].
+    detail : str
+        Words that end the message.
+    """
 
     reason = "the motion did not settle on a periodic orbit"
 
 
 class BranchEnded(ContactError):
-    """A branch of periodic orbits ends before the event that is looked for.
+    """A branch of periodic orbits that ends before the event that is looked for.
 
-    `orbit` is the last orbit of the branch.  It is None if there is no orbit to start from, or if its law has
-    functions and the error comes from another process.
+    Parameters
+    ----------
+    time, gap, velocity : float
+        Time since the start of the drive [s], distance of the tip from the stop [m] and velocity of the tip
+        towards the stop [m/s].
+    detail : str
+        Words that end the message.
+
+    Attributes
+    ----------
+    orbit : object
+        Last orbit of the branch.  It is None if there is no orbit to start from, or if its law has functions
+        and the error comes from another process.
     """
 
     reason = "the branch of periodic orbits ends"
@@ -92,6 +174,15 @@ class BranchEnded(ContactError):
 
 
 class NoDerivative(ContactError):
-    """A motion or orbit where it does not depend smoothly on its start or its numbers."""
+    """A motion or orbit that does not depend smoothly on its start or its numbers.
+
+    Parameters
+    ----------
+    time, gap, velocity : float
+        Time since the start of the drive [s], distance of the tip from the stop [m] and velocity of the tip
+        towards the stop [m/s].
+    detail : str
+        Words that end the message.
+    """
 
     reason = "there is no derivative"

@@ -24,22 +24,24 @@ CSV |= dict(impulse="N s", peak_force="N")
 class Impacts:
     """The touches of the tip, in the order in which they began.
 
-    A time is kept as the number of a stretch, from one strobe to the next, and the time since its strobe.  A
-    state is kept as deviations u = q - q_s and v = q' - q_s' from the steady motion q_s of the `oscillator`.
-    Both are right to rounding however long the run.  Times in seconds and modal states are made on demand.
+    `Trajectory.impacts` holds them.  Times in seconds (`start`, `end`, `duration`) and modal states are made
+    on demand from the parameters below.
 
     Parameters
     ----------
+    oscillator : ImpactOscillator
+        The oscillator that moved.
     stretch : ndarray of int, shape (n_impacts,)
         Number of the stretch, from strobe to strobe, in which a touch begins.
     clock, end_clock : ndarray, shape (n_impacts,)
-        First touch and release, counted from the strobe that begins this stretch [s]; equal for an impact
-        law, the second NaN for a contact that had not ended.
+        Times of first touch and release since the strobe that begins this stretch [s].  They are equal for
+        an impact law; the second is NaN for a contact that had not ended.
     approach, rebound : ndarray, shape (n_impacts,)
-        Velocity at both, positive towards the stop [m/s]; an approach before the run is NaN.
+        Velocities of the tip at both times, positive towards the stop [m/s].  The approach is NaN for a
+        contact that had begun before the run.
     loss : ndarray, shape (n_impacts,)
-        Energy that the tip has given to the stop [J].  A contact that has ended has lost it; in one still
-        closed it includes what the stop stores.  That of a stay is the energy of the hops before it.
+        Energy that the tip has given to the stop [J].  In a contact that is still closed it includes the
+        energy stored in the stop.  A stay has the energy of the hops before it.
     impulse : ndarray, shape (n_impacts,)
         Integral of the contact force over the touch, to the end of the run if it is still closed [N s].  A
         stay includes the impulse of the hops before it.
@@ -52,10 +54,39 @@ class Impacts:
     stop : ndarray of int, shape (n_impacts,)
         Numbers of the stops, from 0 on.
     together : ndarray of bool, shape (n_impacts,)
-        Whether Newton's law gave this impulse for several stops together: others were met at the same
-        instant, within rounding, or held a point at rest.
+        Whether Newton's law gave this impulse for several stops together.  Other stops were then hit at the
+        same instant, within rounding, or held a point at rest.
     deviations_start, deviations_end : ndarray, shape (n_impacts, 2, n_modes)
-        Deviations (u, v) just before the touch and just after the release.
+        Deviations (u, v) from the steady motion, just before the touch and just after the release.
+
+    See Also
+    --------
+    Trajectory : The motion with these touches.
+    collisions : Touches grouped by the approach of mode 1.
+    ImpactKind : The kinds of touches.
+
+    Notes
+    -----
+    A time is kept as the number of a stretch, from one strobe to the next, and the time since its strobe.  A
+    state is kept as deviations u = q - q_s and v = q' - q_s' from the steady motion q_s of the oscillator.
+    Both are right to rounding however long the run.
+
+    Examples
+    --------
+    The first impact of the letter's spring, driven at 1 % above grazing from its steady motion:
+
+    >>> from beam import single_mode
+    >>> from contact import HarmonicDrive, ImpactOscillator, NewtonRestitution, Stop
+    >>> from contact import before_collision, simulate
+    >>> law = NewtonRestitution(local_restitution=0.1)
+    >>> oscillator = ImpactOscillator(
+    ...     model=single_mode(free_period=40.80e-3, decay_rate=3.56),
+    ...     stop=Stop(gap=11.9e-3, law=law),
+    ...     drive=HarmonicDrive(frequency=22.2),
+    ... ).with_excess(0.01)
+    >>> impacts = simulate(oscillator, before_collision(oscillator), periods=3).impacts
+    >>> print(impacts.start.round(4), impacts.approach.round(3), impacts.rebound.round(4))
+    [0.0561] [0.235] [-0.0235]
     """
 
     oscillator: ImpactOscillator = field(repr=False)
@@ -80,12 +111,11 @@ class Impacts:
     def of_states(
         oscillator: ImpactOscillator, *, times: np.ndarray, states: np.ndarray, **columns: np.ndarray
     ) -> Impacts:
-        """Touches that another program has found; `columns` are approach to stop of the list above.
-
-        Without impulse or peak force these are NaN; without them `stop` is 0 and `together` false.
+        """Return the touches that another program has found.
 
         `times` [s] has the shape (2, n_impacts), and the modal states (q, q') have (2, n_impacts, 2,
-        n_modes): first the touches, then the releases.
+        n_modes): first the touches, then the releases.  `columns` are the arrays from approach to together
+        of the list above.  By default impulse and peak force are NaN, `stop` is 0 and `together` false.
         """
         count = times.shape[1]
         unknown = dict.fromkeys(("impulse", "peak_force"), np.full(count, np.nan))
@@ -135,22 +165,22 @@ class Impacts:
 
     @cached_property
     def displacement_start(self) -> np.ndarray:
-        """Modal displacements just before the touch [m kg^0.5], shape (n_impacts, n_modes)."""
+        """Modal displacements just before the touch [kg^(1/2) m], shape (n_impacts, n_modes)."""
         return self._steady[0][0] + self.deviations_start[:, 0]
 
     @cached_property
     def velocity_start(self) -> np.ndarray:
-        """Modal velocities just before the touch [m kg^0.5 / s], shape (n_impacts, n_modes)."""
+        """Modal velocities just before the touch [kg^(1/2) m/s], shape (n_impacts, n_modes)."""
         return self._steady[0][1] + self.deviations_start[:, 1]
 
     @cached_property
     def displacement_end(self) -> np.ndarray:
-        """Modal displacements just after the release [m kg^0.5], shape (n_impacts, n_modes)."""
+        """Modal displacements just after the release [kg^(1/2) m], shape (n_impacts, n_modes)."""
         return self._steady[1][0] + self.deviations_end[:, 0]
 
     @cached_property
     def velocity_end(self) -> np.ndarray:
-        """Modal velocities just after the release [m kg^0.5 / s], shape (n_impacts, n_modes)."""
+        """Modal velocities just after the release [kg^(1/2) m/s], shape (n_impacts, n_modes)."""
         return self._steady[1][1] + self.deviations_end[:, 1]
 
 

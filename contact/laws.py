@@ -4,11 +4,11 @@ With the penetration d = x - gap [m] and its rate d' [m/s], the stop pushes the 
 -N, N >= 0, that acts only where d > 0.
 
 * Impact law: ``NewtonRestitution``, velocity of the tip d' -> -e d' at once (letter 1996, below Eq. (1)).
-* Force laws: ``LinearContact``, N = max(0, k d + c d').  With a dashpot (c > 0) the force vanishes before the
-  tip has left the wall: the contact lets go inside, and may close again there.  ``HertzContact``, N = k
-  d^(3/2) (H. Hertz, J. reine angew. Math. 92 (1882) 156), and ``HuntCrossley``, N = k d^(3/2) (1 + chi d')
-  (K. H. Hunt, F. R. E. Crossley, J. Appl. Mech. 42 (1975) 440), which vanishes only at d = 0.  Other powers
-  of d, with a restitution that holds at every speed, are ``PowerContact``.
+* Force law: ``LinearContact``, N = max(0, k d + c d').  With a dashpot (c > 0) the force vanishes before the
+  tip has left the wall: the contact lets go inside, and may close again there.
+
+Other laws have files of their own: ``HertzContact`` and ``HuntCrossley`` in ``contact.hertz``,
+``PowerContact`` in ``contact.touch.power_law`` and ``DelayedRestitution`` in ``contact.touch.delayed``.
 
 Compiled code sees no objects: a law gives it a small integer, two numbers and a table (`code`, `numbers`,
 `table`).  ``contact.touch`` has the compiled part of each law, and says how to add one.
@@ -23,35 +23,37 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from beam.parameters import final, require_within, suspect
+from beam.parameters import final, require_within
 from contact.restitution import damping_ratio
 from contact.speed_table import SPEEDS, Points, SpeedFunction, raised, require_points, require_speeds, sampled
 
 NEWTON, LINEAR, POWER = 0, 1, 2
-"""Codes of the laws in this file; another law stands with its code and its compiled part in one file of
-``contact.touch``, as ``DelayedRestitution`` does."""
-
-HERTZ_TIME = 0.8 * math.sqrt(math.pi) * 2.0757065006382507
-"""Contact time of a free mass under Hertz's law over (greatest approach / approach velocity): 0.8 sqrt(pi)
-Gamma(0.4)/Gamma(0.9) = 2.9432 [1]."""
-
-SOFTEST, HARDEST = 1e8, 1.5e12
-"""Young's moduli of the bodies in contact beyond which a warning is given [Pa]: soft polymers and diamond; in
-GPa or MPa a modulus is far below."""
+"""Codes of the laws of instantaneous impact, of linear contact and of powers of d (``contact.touch.power``).
+A new law stands with its code and its compiled part in one file of ``contact.touch``, as
+``DelayedRestitution`` does."""
 
 
 class ContactLaw:
-    """What all laws offer to the compiled motion.
+    """Common part of all contact laws: the numbers that compiled code reads.
+
+    Users take one of its children, such as `NewtonRestitution`; ``contact.touch`` says how to add another.
 
     Attributes
     ----------
     code : int
-        The number by which ``contact.touch.LAWS`` finds the compiled part of the law.
+        Number by which ``contact.touch.LAWS`` finds the compiled part of the law.
     units : dict of str to str
         Names and units of the plain numbers of the law, two at most.  In a force law the first, its
         stiffness, is above zero and the other zero or more.
     one_mode_only : bool
         Whether the law holds for one mode only.
+
+    Raises
+    ------
+    ValueError
+        If a number of the law is out of its range or not finite.
+    TypeError
+        If a number of the law is of another kind.
     """
 
     code: ClassVar[int] = -1
@@ -93,17 +95,46 @@ class NewtonRestitution(ContactLaw):
     Parameters
     ----------
     local_restitution : float, callable or array_like of shape (2, n)
-        e, from 0 (plastic) to 1 (elastic) [1].  The letter's tau is this number for one mode only.  It can be
-        a function of the approach speed [m/s], or a table: two or more rising speeds [m/s], zero or more, and
-        the restitutions there.  A table is interpolated by monotone cubics (F. N. Fritsch, J. Butland, SIAM
-        J. Sci. Stat. Comput. 5 (1984) 300) and kept as a pair of tuples.  At vanishing speed (hops, grazing,
-        Nordmark's map) the value at the lowest speed holds.
+        Restitution e, from 0 (plastic) to 1 (elastic) [1].  It can be a function of the approach speed [m/s].
+        It can also be a table: two or more rising speeds [m/s], zero or more, and the restitution at each.
     speeds : (float, float)
-        Range of approach speeds in which a function is sampled [m/s].  Functions and tables keep their end
-        values beyond their range.
+        Range of approach speeds in which a function is sampled [m/s].
 
-    Raises InvalidValue for a restitution outside 0 to 1 at any of these speeds, or speeds that do not rise,
-    and InvalidType for one that is no number.
+    Raises
+    ------
+    ValueError
+        If a restitution at one of these speeds lies outside 0 to 1, or if speeds do not rise.
+    TypeError
+        If a restitution is neither a number, nor a function that returns one, nor a table of numbers.
+
+    See Also
+    --------
+    LinearContact : A contact with a force, in which the tip stays for a time.
+    DelayedRestitution : A restitution after a delay, for one mode.
+    restitution_from_bounces : The restitution of a ball, from a measurement.
+
+    Notes
+    -----
+    With one mode this restitution is the letter's tau.  With more modes tau is an outcome of the motion:
+    `collisions` measures it.
+
+    Functions and tables keep their end values beyond their range.  At vanishing speed (hops, grazing,
+    Nordmark's map) the value at the lowest speed holds.  A table is interpolated by monotone cubics (F. N.
+    Fritsch, J. Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300) and kept as a pair of tuples.
+
+    Examples
+    --------
+    A spring falls against a stop, with a restitution that is lower in faster impacts:
+
+    >>> from beam import single_mode
+    >>> from contact import ImpactOscillator, NewtonRestitution, State, Stop, simulate
+    >>> law = NewtonRestitution(local_restitution=([0.0, 0.1, 1.0], [0.9, 0.7, 0.5]))
+    >>> model = single_mode(free_period=40.80e-3, decay_rate=3.56)
+    >>> spring = ImpactOscillator(model=model, stop=Stop(gap=0.0, law=law))
+    >>> start = State(displacement=[-1e-3], velocity=[0.0])
+    >>> impacts = simulate(spring, start, duration=0.06).impacts
+    >>> print(impacts.approach.round(3), (-impacts.rebound / impacts.approach).round(3))
+    [0.151 0.098 0.067] [0.675 0.701 0.744]
     """
 
     local_restitution: float | SpeedFunction | Points
@@ -155,9 +186,31 @@ class LinearContact(ContactLaw):
     Parameters
     ----------
     stiffness : float
-        k, above zero [N/m].
+        Stiffness k of the spring, above zero [N/m].
     damping : float
-        c, zero or more [N s/m].
+        Constant c of the dashpot, zero or more [N s/m].
+
+    Raises
+    ------
+    ValueError
+        If a number is out of its range or not finite.
+    TypeError
+        If one of them is no number.
+
+    See Also
+    --------
+    HertzContact : The force of an elastic ball, without loss.
+    PowerContact : A force with any power of the depth.
+    damping_ratio : The damping ratio of the dashpot for a given restitution.
+
+    Examples
+    --------
+    The dashpot under which a ball of 4 g leaves with half its approach speed:
+
+    >>> from contact import LinearContact
+    >>> law = LinearContact.with_restitution(stiffness=1e5, restitution=0.5, mass=4e-3)
+    >>> print(f"{law.damping:.2f} N s/m")
+    10.21 N s/m
     """
 
     stiffness: float
@@ -167,116 +220,14 @@ class LinearContact(ContactLaw):
 
     @staticmethod
     def with_restitution(*, stiffness: float, restitution: float, mass: float) -> LinearContact:
-        """The law under which a free `mass` m [kg] leaves with `restitution` times its approach speed.
+        """Return the law under which a free `mass` [kg] leaves with `restitution` times its approach speed.
 
-        `restitution` lies above 0 and is at most 1, and holds at every speed: c = 2 zeta sqrt(k m) with zeta
-        of ``contact.damping_ratio``.  The tip of a modal model meets the stop with the mass 1/sum phi^2 of
-        its modes; ``ModalModel.tip_mass`` is the limit for all modes.  If its modes move during the contact,
-        the tip leaves with another restitution than the free mass.
+        `restitution` lies above 0 and is at most 1, and holds at every speed.  The dashpot of a mass m is
+        c = 2 zeta sqrt(k m), with zeta of ``contact.damping_ratio``.  The tip of a modal model meets the stop
+        with the mass 1/sum phi^2 of its modes; ``ModalModel.tip_mass`` is the limit for all modes.  If its
+        modes move during the contact, the tip leaves with another restitution than the free mass.
         """
         elastic = LinearContact(stiffness=stiffness)
         mass = require_within("mass", mass, "kg", above=0)
         damping = 2.0 * damping_ratio(restitution) * math.sqrt(elastic.stiffness * mass)
         return replace(elastic, damping=damping)
-
-
-@final
-@dataclass(frozen=True, kw_only=True)
-class HertzContact(ContactLaw):
-    """Elastic contact of a ball: N = `stiffness` d^(3/2) for d > 0.
-
-    Parameters
-    ----------
-    stiffness : float
-        k, above zero [N/m^1.5].
-    """
-
-    stiffness: float
-    code: ClassVar[int] = POWER
-    units: ClassVar[dict[str, str]] = {"stiffness": "N/m^1.5"}
-
-    @property
-    def table(self) -> np.ndarray:
-        """m, m x and m y of ``contact.touch.power``, with x = 3/2 and y = 0."""
-        return np.array([[2.0, 3.0, 0.0]])
-
-    @staticmethod
-    def of_bodies(
-        *,
-        radius: float,
-        youngs_modulus: float,
-        poissons_ratio: float,
-        other_modulus: float,
-        other_ratio: float,
-    ) -> HertzContact:
-        """A ball of `radius` [m] on a plate: k = (4/3) sqrt(R) / ((1 - nu^2)/E + (1 - nu'^2)/E')
-        [N/m^1.5]."""
-        require_within("radius", radius, "m", above=0)
-        for name, value in (("youngs_modulus", youngs_modulus), ("other_modulus", other_modulus)):
-            require_within(name, value, "Pa", above=0)
-            if not SOFTEST <= value <= HARDEST:
-                known = f"solids that a ball rebounds from lie between {SOFTEST:g} and {HARDEST:g} Pa"
-                suspect(f"{name} is {value:g} Pa; {known}")
-        for name, value in (("poissons_ratio", poissons_ratio), ("other_ratio", other_ratio)):
-            require_within(name, value, "[1]", above=-1, high=0.5)
-        compliance = (1 - poissons_ratio**2) / youngs_modulus + (1 - other_ratio**2) / other_modulus
-        return HertzContact(stiffness=4.0 / 3.0 * math.sqrt(radius) / compliance)
-
-    def greatest_approach(self, mass: float, velocity: float) -> float:
-        """Depth that a free `mass` [kg] reaches at approach `velocity` [m/s]: (5 m v^2 / (4 k))^(2/5) [m]."""
-        require_within("mass", mass, "kg", above=0)
-        require_within("velocity", velocity, "m/s", above=0)
-        return float((1.25 * mass * velocity**2 / self.stiffness) ** 0.4)
-
-    def contact_time(self, mass: float, velocity: float) -> float:
-        """Duration of the contact of a free `mass` [kg] at approach `velocity` [m/s] [s]."""
-        return HERTZ_TIME * self.greatest_approach(mass, velocity) / velocity
-
-
-@final
-@dataclass(frozen=True, kw_only=True)
-class HuntCrossley(ContactLaw):
-    """Hertz's law with dissipation: N = `stiffness` d^(3/2) (1 + `dissipation` d') for d > 0.
-
-    The law as its authors have it: for d' < -1/chi the force would pull, which a free mass never reaches but
-    a heavily damped tip that is torn off the stop can.  A free mass leaves with v_out given by
-    a - ln(1 + a) = -b - ln(1 - b), a = chi v_in, b = chi v_out.
-
-    Parameters
-    ----------
-    stiffness : float
-        k, above zero [N/m^1.5].
-    dissipation : float
-        chi, zero or more [s/m].
-    """
-
-    stiffness: float
-    dissipation: float
-    code: ClassVar[int] = POWER
-    units: ClassVar[dict[str, str]] = {"stiffness": "N/m^1.5", "dissipation": "s/m"}
-    table = HertzContact.table
-
-    @staticmethod
-    def with_restitution(*, stiffness: float, restitution: float, velocity: float) -> HuntCrossley:
-        """The law under which a free mass with approach `velocity` [m/s] leaves with `restitution` times it.
-
-        `restitution` lies above 0 and is at most 1; the relation is exact, for any exponent of d.  It holds
-        at this speed only: slower masses leave with more of their speed, faster ones with less.  Under
-        ``PowerContact.with_restitution`` the restitution holds at every speed.
-        """
-        e = require_within("restitution", restitution, "[1]", above=0, high=1)
-        require_within("velocity", velocity, "m/s", above=0)
-        if e == 1.0:
-            return HuntCrossley(stiffness=stiffness, dissipation=0.0)
-
-        from scipy.optimize import brentq  # slow to import
-
-        def balance(w: float) -> float:
-            """The relation with b = 1 - exp(-w), a = b/e: b itself comes too close to 1 when e is small."""
-            b = -math.expm1(-w)
-            return b / e - math.log1p(b / e) + b - w
-
-        # for e near 1 the root is at b = (3/2)(1/e^2 - 1)/(1/e^3 + 1), for small e just below w = 1/e + 1
-        low = 0.5 * min(1.0, 1.5 * e * (1.0 - e * e) / (1.0 + e**3))
-        root = -math.expm1(-float(brentq(balance, low, 1.0 / e + 2.0, xtol=1e-300, rtol=1e-15, maxiter=500)))
-        return HuntCrossley(stiffness=stiffness, dissipation=root / (e * velocity))

@@ -4,13 +4,10 @@
     x_j = sum_k phi_jk q_k,   d_j = x_j - gap_j,   z = Z sin(2 pi f t)
 
 with mass-normalised modes (q in m kg^0.5), x_j the displacement towards stop j relative to the base [m], N_j
->= 0 the contact force [N] and g_k an optional constant modal load [N kg^-0.5].  A single stop is most often
+>= 0 the contact force [N] and g_k an optional constant modal load [N kg^(-1/2)].  A single stop is most often
 at the tip, and x is then its displacement.  With one mode, phi = Gamma = 1 and
-``NewtonRestitution`` this is Eq. (1) of the letter (1996), whose F is Z (2 pi f)^2.
-
-Steady response without contact: q_k = Z Im(H_k exp(i 2 pi f t)), H_k = Gamma_k w^2 / (omega_k^2 - w^2 + i c_k
-w), about the static displacement g_k/omega_k^2.  The tip just touches the stop at the grazing amplitude Z_g =
-(gap - sum_k phi_k g_k/omega_k^2) / |sum_k phi_k H_k|.
+``NewtonRestitution`` this is Eq. (1) of the letter (1996), whose F is Z (2 pi f)^2.  The motion without
+contact, and the amplitude Z_g at which it grazes the stop, are in ``contact.steady_response``.
 """
 
 from __future__ import annotations
@@ -29,13 +26,8 @@ from contact.drive import HarmonicDrive
 from contact.flight.numbers import Numbers, numbers_of, stacked, with_drive
 from contact.laws import NewtonRestitution
 from contact.plausible import suspect_sizes
-from contact.stop import Stop, given_stops, rows_of
-
-
-def dynamic_stiffness(omega: np.ndarray, decay_rate: np.ndarray, w: float) -> np.ndarray:
-    """E_k = omega_k^2 - w^2 + i c_k w of modes driven at frequency `w` [rad/s], complex [1/s^2]."""
-    # (omega - w)(omega + w) keeps its digits close to resonance, where omega^2 - w^2 would lose them
-    return np.asarray((omega - w) * (omega + w) + 1j * decay_rate * w)
+from contact.steady_response import lowest_grazing, refuse_drift, refuse_resonance, response_of
+from contact.stop import Stop, given_stops, only_stop_of, rows_of
 
 
 @final
@@ -43,27 +35,60 @@ def dynamic_stiffness(omega: np.ndarray, decay_rate: np.ndarray, w: float) -> np
 class ImpactOscillator:
     """A modal spring on a moving base, with one stop or several.
 
+    Simulation takes any number of stops.  Collisions, maps and periodic orbits need a single stop at the tip.
+
     Parameters
     ----------
     model : ModalModel
-        Modes: omega, decay_rate, phi, participation, each (n_modes,), and points by name.
-    stop : Stop
-        The only stop; or give `stops`.
-    stops : sequence of Stop
-        Stops at points of the model, on either side.  Touches name them by their numbers from 0 on.
-    drive : HarmonicDrive or None
+        Modes of the spring, and its points by name.
+    stop : Stop, optional
+        The only stop.  Give either `stop` or `stops`.
+    stops : sequence of Stop, optional
+        Stops at points of the model, on either side.  `Impacts` names them by their numbers from 0 on.
+    drive : HarmonicDrive, optional
         Base motion; None for a base at rest.
-    load : ndarray, shape (n_modes,), optional
-        Constant modal load [N kg^-0.5].
+    load : array_like, shape (n_modes,), optional
+        Constant modal load [N kg^(-1/2)].
     simultaneous : {"moreau", "sequential"}
-        The law if several stops of Newton's law are met at one instant, or one while a point rests on
-        another: Moreau's for all of them, or one stop after the other, that with the largest approach
-        velocity first (``contact.touch.impulses``).  ``docs/several_stops.md`` says which suits what.
+        Rule if several stops of Newton's law are hit at one instant, or one while a point rests on another:
+        Moreau's law for all of them, or one after the other, the fastest approach first
+        (``contact.touch.impulses``).  ``docs/several_stops.md`` compares the two.
 
-    Simulation takes any number of stops.  What holds for a single stop at the tip, such as collisions, maps
-    and periodic orbits, refuses others in one sentence.
+    Raises
+    ------
+    ValueError
+        If not exactly one of `stop` and `stops` is given, a stop cannot be reached, or two stops lie at one
+        place.  If a driven spring has a gap of zero, or the frequency of the drive is that of an undamped
+        mode.  If the load does not fit the model, or `simultaneous` is another word.
+    TypeError
+        If an argument is of another kind, or the law of a stop holds for one mode and the model has more.
 
-    Sizes that no spring and no exciter has bring a SuspiciousValue warning (``contact.plausible``).
+    Warns
+    -----
+    SuspiciousValue
+        If a gap, the amplitude or the frequency of the drive has a size that no spring and no exciter has.
+
+    See Also
+    --------
+    simulate : The motion of an oscillator, with its impacts.
+    StroboscopicMap : The map of its state from one drive period to the next.
+    MaximalFamily : Its periodic orbits with one impact, in closed form.
+
+    Examples
+    --------
+    The letter's spring, driven at 0.1 % above the amplitude at which it grazes the stop:
+
+    >>> from beam import single_mode
+    >>> from contact import HarmonicDrive, ImpactOscillator, NewtonRestitution, Stop
+    >>> oscillator = ImpactOscillator(
+    ...     model=single_mode(free_period=40.80e-3, decay_rate=3.56),
+    ...     stop=Stop(gap=11.9e-3, law=NewtonRestitution(local_restitution=0.1)),
+    ...     drive=HarmonicDrive(frequency=22.2),
+    ... )
+    >>> print(f"{1e3 * oscillator.grazing_amplitude():.3f} mm")
+    2.625 mm
+    >>> print(f"{1e3 * oscillator.with_excess(1e-3).drive.amplitude:.3f} mm")
+    2.627 mm
     """
 
     model: ModalModel
@@ -102,7 +127,7 @@ class ImpactOscillator:
         require_kind("drive", self.drive, (HarmonicDrive, type(None)), "a HarmonicDrive or None")
         words = f"is {shown(self.simultaneous)}; it must be 'moreau' or 'sequential'"
         require(self.simultaneous in ("moreau", "sequential"), "simultaneous", words)
-        omega, decay = self.model.omega, self.model.decay_rate
+        omega = self.model.omega
         vars(self).update(_rows=rows_of(self.stops, self.model))
         if self.load is not None:
             words = f"{omega.size} finite modal loads"
@@ -113,9 +138,7 @@ class ImpactOscillator:
         if self.drive is None:
             return
         require(gap > 0, "gap", f"is {gap} m; for a driven spring it must be above zero")
-        resonant = (omega == self.drive.angular_frequency) & (decay == 0)
-        words = f"{self.drive.frequency:g} Hz, that of an undamped mode without steady motion; it must differ"
-        require(not np.any(resonant), "frequency of the drive", f"is {words}")
+        refuse_resonance(self.model, self.drive)
 
     @property
     def n_modes(self) -> int:
@@ -154,10 +177,8 @@ class ImpactOscillator:
         return law.numbers[0]
 
     def with_amplitude(self, amplitude: float) -> ImpactOscillator:
-        """The same oscillator driven with another base amplitude [m].
-
-        A search may pass through any amplitude: none is suspicious here.
-        """
+        """Return the same oscillator driven with another base `amplitude` [m], zero or more."""
+        # a search may pass through any amplitude: none is suspicious here
         number = require_within("amplitude", amplitude, "m", low=0)
         changed = copy.copy(self)  # all else has been checked
         object.__setattr__(changed, "drive", replace(self.driven, amplitude=number))
@@ -165,17 +186,16 @@ class ImpactOscillator:
         return changed
 
     def with_excess(self, excess: float) -> ImpactOscillator:
-        """The same oscillator driven at F/F_g - 1 = `excess` [1]."""
+        """Return the same oscillator driven at F/F_g - 1 = `excess` [1], above -1."""
         number = require_within("excess", excess, "[1]", above=-1)
         return self.with_amplitude((1.0 + number) * self.grazing_amplitude())
 
     def heights(self, displacement: np.ndarray) -> np.ndarray:
-        """Heights d_j over all stops [m], shape (..., n_stops), of modal displacements (..., n_modes); below
-        zero where a stop is not reached."""
+        """Return the heights d_j over all stops, shape (..., n_stops) [m]; below zero off the stop."""
         return np.asarray(displacement) @ np.transpose(self._rows) - [stop.gap for stop in self.stops]
 
     def tip(self, values: np.ndarray) -> np.ndarray:
-        """Tip displacement relative to the base [m], or tip velocity [m/s], shape (...), of modal
+        """Return the tip displacement relative to the base [m] or its velocity [m/s], shape (...), of modal
         displacements or velocities `values`, shape (..., n_modes); NaN gives NaN."""
         try:
             return np.asarray(values) @ self.model.phi
@@ -184,15 +204,11 @@ class ImpactOscillator:
             raise InvalidValue(f"values is {shown(values)}; it must be {valid}") from None
 
     def steady_response(self) -> np.ndarray:
-        """H_k, complex, shape (n_modes,) [kg^0.5]: without contact q_k(t) = g_k/omega_k^2 + Z Im(H_k exp(i 2
-        pi f t))."""
-        if self.drive is None:
-            return np.zeros(self.n_modes, dtype=complex)
-        w, model = self.drive.angular_frequency, self.model
-        return model.participation * w**2 / dynamic_stiffness(model.omega, model.decay_rate, w)
+        """Return H_k, complex, shape (n_modes,) [kg^(1/2)], of ``contact.steady_response``."""
+        return response_of(self.model, self.drive)
 
     def tip_response(self) -> complex:
-        """Tip displacement per base amplitude without contact, complex [1]."""
+        """Return the tip displacement per base amplitude without contact, complex [1]."""
         seen = self._only_at_one_metre
         return complex(seen.tip_sine, seen.tip_cosine)
 
@@ -206,61 +222,43 @@ class ImpactOscillator:
     def _require_steady(self) -> None:
         """Refuse a base at rest, and a load under which a mode drifts."""
         _ = self.driven
-        if self.load is not None:
-            words = "for a steady motion it must be zero on a mode of zero frequency, which drifts"
-            drifts = np.any(self.load[self.model.omega == 0.0])
-            require(not drifts, f"load is {shown(self.load.tolist())} N kg^-0.5; {words}")
+        refuse_drift(self.model, self.load)
 
     def drive_at(self, reach: float, rate: float) -> tuple[float, float]:
-        """Base amplitude [m] and drive time [s] at which the steady tip motion has displacement `reach` [m]
-        and velocity `rate` [m/s]."""
+        """Return the base amplitude [m] and the drive time [s] that give the steady tip motion the
+        displacement `reach` [m] and the velocity `rate` [m/s]."""
         w, height = self.driven.angular_frequency, reach - (self.mean_height + self.stop.gap)
         # x = x_0 + Z Im(H e^{i w t}), x' = Z w Re(H e^{i w t}), so Z e^{i w t} = C + i S with
         phasor = np.complex128(complex(rate / w, height)) / self.tip_response()
         return abs(phasor), float(np.angle(phasor) % (2.0 * np.pi)) / w
 
     def grazing_amplitude(self) -> float:
-        """Base amplitude Z_g at which the steady motion just touches a stop, the first of several [m]."""
+        """Return the lowest base amplitude at which the steady motion just touches a stop [m]."""
         self._require_steady()
-        reached = []
-        for seen in self._at_one_metre:
-            level, gap, response = seen.level, seen.gap, seen.amplitude
-            words = f"the static displacement {level + gap:g} m must stay below it"
-            require(level < 0.0, f"gap is {gap} m; {words}")
-            reached += [-level / response] if response > 0.0 else []
-        words = "the drive does not move the tip; at least one mode must have both other than zero"
-        require(bool(reached), f"phi and participation are such that {words}")
-        return float(min(reached))
+        return lowest_grazing(self._at_one_metre)
 
     @property
     def excess(self) -> float:
-        """F/F_g - 1 [1]."""
+        """Drive amplitude relative to grazing, F/F_g - 1 [1]."""
         return self.driven.amplitude / self.grazing_amplitude() - 1.0
 
     def energy(self, displacement: np.ndarray, velocity: np.ndarray) -> np.ndarray:
-        """Kinetic and elastic energy of modal states, arrays (..., n_modes) -> (...) [J]; contact
-        excluded."""
+        """Return the kinetic and elastic energy of modal states (..., n_modes) without contact [J]."""
         q, v = np.asarray(displacement), np.asarray(velocity)
         return 0.5 * np.sum(v**2 + (self.model.omega * q) ** 2, axis=-1)
 
     def numbers(self) -> Numbers:
-        """The numbers of an oscillator with one stop at the tip, as the kernels take them; not to be written
-        into.  ValueError is raised for several stops, or one elsewhere."""
+        """Return the read-only numbers for kernels of one stop at the tip; ValueError for other stops."""
         self.only_stop("this")
         return self._motion
 
     def stacked(self) -> Numbers:
-        """The numbers with all stops, as simulation takes them; not to be written into."""
+        """Return the read-only numbers for kernels with all stops, as simulation takes them."""
         return self._motion
 
     def only_stop(self, what: str) -> Stop:
-        """The only stop, at the tip and on its positive side; ValueError says that `what` needs this."""
-        words = f"{what} needs one stop at the tip, on its positive side"
-        require(len(self.stops) == 1, "stops", f"has {len(self.stops)} entries; {words}")
-        at, side = self.stops[0].at, self.stops[0].side
-        hint = "give a model whose phi is the row of that stop"
-        require(at == "tip" and side == 1, "stop", f"is at {at!r}, side {side:+d}; {words}, so {hint}")
-        return self.stops[0]
+        """Return the only stop, at the tip on its positive side; ValueError says that `what` needs this."""
+        return only_stop_of(self.stops, what)
 
     @cached_property
     def _motion(self) -> Numbers:

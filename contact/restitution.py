@@ -21,10 +21,18 @@ FEWEST = 3  # bounces with a ratio of intervals
 
 
 class MeasuredRestitution(NamedTuple):
-    """A restitution from a measurement, with its standard error."""
+    """A restitution from a measurement, with its standard error.
 
-    restitution: float  # [1]
-    standard_error: float  # [1], NaN if unknown
+    Parameters
+    ----------
+    restitution : float
+        Rebound speed over approach speed [1].
+    standard_error : float
+        Standard error of the restitution [1]; NaN if it is unknown.
+    """
+
+    restitution: float
+    standard_error: float
 
 
 def log_restitution(zeta: float) -> float:
@@ -36,17 +44,27 @@ def log_restitution(zeta: float) -> float:
 
 
 def damping_ratio(restitution: float) -> float:
-    """Damping ratio of the spring and dashpot, its force cut at zero, with this restitution of a free mass.
+    """Return the damping ratio of a spring and dashpot under which a free mass has this restitution.
 
-    The dashpot of a mass m at a stiffness k is c = 2 zeta sqrt(k m) (T. Schwager, T. Poeschel, Granular
-    Matter 9 (2007) 465).
+    The force of the stop is cut at zero.  The dashpot of a mass m at a stiffness k is c = 2 zeta sqrt(k m)
+    (T. Schwager, T. Poeschel, Granular Matter 9 (2007) 465).
 
     Parameters
     ----------
     restitution : float
         Rebound speed over approach speed, above 0 and at most 1 [1].
 
-    Returns the damping ratio zeta [1].  Raises InvalidType or InvalidValue for a wrong number.
+    Returns
+    -------
+    float
+        Damping ratio zeta [1].
+
+    Raises
+    ------
+    ValueError
+        If the restitution is not above 0 and at most 1.
+    TypeError
+        If the restitution is no number.
     """
     log = math.log(require_within("restitution", restitution, "[1]", above=0, high=1))
     if log == 0.0:
@@ -61,11 +79,7 @@ def damping_ratio(restitution: float) -> float:
 
 
 def restitution_from_bounces(times: ArrayLike) -> MeasuredRestitution:
-    """Restitution of a ball from the times at which it hits a floor at rest.
-
-    The intervals between bounces fall by the restitution, t_n = t_0 + T (1 + e + ... + e^(n-1)).  The three
-    unknowns are fitted to the times by least squares.  This is the best estimate if the times have
-    independent errors of one size.  Ratios of successive intervals would share these errors.
+    """Return the restitution of a ball from the times at which it hits a floor at rest.
 
     Parameters
     ----------
@@ -75,10 +89,35 @@ def restitution_from_bounces(times: ArrayLike) -> MeasuredRestitution:
     Returns
     -------
     MeasuredRestitution
-        The `restitution` [1], which errors of the times can lift above 1, and its `standard_error` [1].  The
-        size of the errors is taken from the residuals; three times leave none, and the error is NaN.
+        Restitution and its standard error [1].  Errors of the times can lift the restitution above 1.  The
+        standard error is NaN for three times, which leave no residuals.
 
-    Raises InvalidType or InvalidValue for wrong times.
+    Raises
+    ------
+    ValueError
+        If there are fewer than three times, or if they do not rise or are not finite.
+    TypeError
+        If `times` is no array of numbers.
+
+    See Also
+    --------
+    NewtonRestitution : The law that takes the restitution.
+    damping_ratio : The damping ratio of a dashpot with this restitution.
+
+    Notes
+    -----
+    Each interval between bounces is the one before it times the restitution.  The times are therefore
+    ``t_n = t_0 + T (1 + e + ... + e^(n-1))``.  The three unknowns t_0, T and e are fitted by least squares.
+    This is the best estimate if the times have independent errors of one size.
+
+    Examples
+    --------
+    Times in seconds, read from a sound record:
+
+    >>> from contact import restitution_from_bounces
+    >>> e = restitution_from_bounces([0.001, 0.600, 1.081, 1.463, 1.771])
+    >>> print(f"{e.restitution:.3f} with a standard error of {e.standard_error:.3f}")
+    0.800 with a standard error of 0.001
     """
     given = require_array("times", times, "s", dimensions=1)
     require(given.size >= FEWEST, "times", f"has {given.size} entries; it must have {FEWEST} or more")

@@ -69,36 +69,87 @@ def simulate(
     times: np.ndarray | None = None,
     method: Integrator | str | None = None,
 ) -> Trajectory:
-    """Motion of an impact oscillator, with its impacts; exact unless another method is chosen.
+    """Return the motion of an impact oscillator with all its impacts.
+
+    The motion is exact to rounding unless another method is chosen.
 
     Parameters
     ----------
     oscillator : ImpactOscillator
+        Spring with its stops and its drive.
     state : State, optional
-        Where to start; the spring at rest at time zero if left out.
-    duration, periods : float or int, optional
-        Length of the run [s], or in drive periods; give one of them.
-    times : array_like, optional
+        State at the start; by default the spring is at rest at time zero.
+    duration : float, optional
+        Length of the run [s].  Give either `duration` or `periods`.
+    periods : int, optional
+        Length of the run in drive periods; in periods of the lowest mode if the base is at rest.
+    times : array_like, shape (n_times,), optional
         Rising times within the run at which the state is wanted [s].
     method : Integrator or str, optional
-        Another method than the exact one, e.g. ``CentralDifference(step=1e-6)``;
-        ``contact.integrators.INTEGRATORS`` lists them by name.
+        Method in place of the exact one, such as ``contact.integrators.CentralDifference(step=1e-6)``, or the
+        name of a method without a step in ``contact.integrators.INTEGRATORS``.
 
     Returns
     -------
     Trajectory
-        Strobed states, states at `times`, impacts and the final state.
+        Strobed states, states at `times`, all impacts, and the state at the end.
 
-    A tip that lies on the stop at the start, within rounding, touches it at once if it moves towards it, and
-    leaves if it moves or is pulled away.  At rest and pressed, or without any force, it stays: under Newton's
-    law as a STAY of approach 0, under a force law as a contact UNDER_WAY that begins at depth 0, and under
-    DelayedRestitution for the delay of its lowest speed, UNDER_WAY too.  That law has no longer rest: a
-    ContactError says so.
+    Raises
+    ------
+    ValueError
+        If not exactly one of `duration` and `periods` is given, or it is not above zero.  If times do not
+        rise or lie outside the run.  If the state has another number of modes, or lies behind the stop of an
+        impact law.  If the name of the method is unknown, or the method follows a single stop only.
+    TypeError
+        If the method does not follow the contact law or needs a step, or an argument is of another kind.
+    StepTooLarge
+        If the step of the method is beyond its limit of stability.
+    Diverged
+        If the motion of a method with a step has grown without bound.
+    UnresolvedCrossing
+        If a part of the motion could be proved neither free nor touching.
+    Chatter
+        If there are more impacts in one drive period than the bound allows.
+    ContactTooStiff
+        If a contact needs more steps than the bound allows.
+    TouchedAtOnce
+        If two stops are touched at once, and the law of one is followed alone.
 
-    ValueError is raised for a run of no length, times out of order or range, or a start behind the wall of an
-    impact law; TypeError for a method that does not know the law; StepTooLarge for a step beyond its
-    limit of stability; and UnresolvedCrossing, Chatter or ContactTooStiff where the motion could not be
-    followed.  A driven spring at rest whose drive has no amplitude brings a SuspiciousValue warning.
+    Warns
+    -----
+    SuspiciousValue
+        If nothing moves: a spring at rest and a drive of amplitude zero.
+
+    See Also
+    --------
+    ImpactOscillator.with_excess : The same oscillator, driven relative to grazing.
+    collisions : The effect of each collision of a trajectory on mode 1.
+    contact.orbits.settle : The periodic orbit that a motion approaches.
+
+    Notes
+    -----
+    A tip may lie on the stop at the start, within rounding.  It touches the stop at once if it moves towards
+    it, and leaves if it moves or is pulled away.  At rest and pressed, or without any force, it stays:
+
+    - under Newton's law as a STAY of approach 0,
+    - under a force law as a contact UNDER_WAY that begins at depth 0,
+    - under `DelayedRestitution` as a contact UNDER_WAY, for the delay of the lowest speed.  This law has no
+      longer rest, so that a tip that is still pressed raises an UnresolvedCrossing.
+
+    Examples
+    --------
+    The letter's spring just above grazing settles on an orbit with one impact in five drive periods:
+
+    >>> from beam import single_mode
+    >>> from contact import HarmonicDrive, ImpactOscillator, NewtonRestitution, Stop, simulate
+    >>> oscillator = ImpactOscillator(
+    ...     model=single_mode(free_period=40.80e-3, decay_rate=3.56),
+    ...     stop=Stop(gap=11.9e-3, law=NewtonRestitution(local_restitution=0.1)),
+    ...     drive=HarmonicDrive(frequency=22.2),
+    ... )
+    >>> trajectory = simulate(oscillator.with_excess(1e-3), periods=1000)
+    >>> print(trajectory.strobe_impacts[-50:].sum(), trajectory.impacts.approach[-3:].round(3))
+    10 [0.369 0.369 0.369]
     """
     require_kind("oscillator", oscillator, ImpactOscillator, "an ImpactOscillator")
     chosen = _method(method, oscillator)

@@ -22,12 +22,37 @@ class Stop:
     gap : float
         Distance from the point at rest to the wall, zero or more [m]; a driven spring needs more than zero.
     law : ContactLaw
-        What happens when the point reaches it.
+        Law of the contact, such as a `NewtonRestitution`.
     at : str or (str, str)
-        Name of a point of the model.  Of two names (a, b), the stop lies between two points and is reached
-        when the difference of their displacements, a less b, is the gap.
+        Name of a point of the model.  With two names (a, b) the stop lies between two points.  It is reached
+        when the displacement of a minus that of b is the gap.
     side : {+1, -1}
-        Where the wall lies: on the side of positive or of negative displacements.
+        Side of the wall: that of positive or that of negative displacements [1].
+
+    Raises
+    ------
+    ValueError
+        If the gap is negative or not finite, if `side` is neither +1 nor -1, or if both names are equal.
+    TypeError
+        If the gap is no number, `law` no contact law, or `at` neither a name nor two names.
+
+    See Also
+    --------
+    ImpactOscillator : A spring with one stop or several.
+    NewtonRestitution : Instantaneous impact.
+    LinearContact : Spring and dashpot at the stop.
+
+    Examples
+    --------
+    A stop for the tip, and the same stop on the other side:
+
+    >>> from dataclasses import replace
+    >>> from contact import NewtonRestitution, Stop
+    >>> stop = Stop(gap=11.9e-3, law=NewtonRestitution(local_restitution=0.1))
+    >>> stop
+    Stop(gap=0.0119, law=NewtonRestitution(local_restitution=0.1), at='tip', side=1)
+    >>> replace(stop, side=-1).side
+    -1
     """
 
     gap: float
@@ -48,9 +73,9 @@ class Stop:
             object.__setattr__(self, "at", tuple(names))
 
     def row_in(self, model: ModalModel) -> np.ndarray:
-        """The weights of the modes in the motion towards the wall, shape (n_modes,) [kg^-0.5].
+        """Return the weights of the modes in the motion towards the wall, shape (n_modes,) [kg^(-1/2)].
 
-        InvalidValue is raised for a name that the model does not have.
+        ValueError is raised for a name that the model does not have.
         """
         names, known = (self.at,) if isinstance(self.at, str) else self.at, ", ".join(model.points)
         for name in names:
@@ -73,6 +98,16 @@ def given_stops(stop: Stop | None, stops: Sequence[Stop] | None) -> tuple[Stop, 
     given = require_each("stops", () if stops is None else stops, Stop, "a sequence of Stop")
     require(len(given) > 0, "stop is missing; give a Stop, or at least one Stop in stops")
     return OnlyStop(given) if len(given) == 1 else given
+
+
+def only_stop_of(stops: tuple[Stop, ...], what: str) -> Stop:
+    """The only stop, at the tip and on its positive side; ValueError says that `what` needs this."""
+    words = f"{what} needs one stop at the tip, on its positive side"
+    require(len(stops) == 1, "stops", f"has {len(stops)} entries; {words}")
+    at, side = stops[0].at, stops[0].side
+    hint = "give a model whose phi is the row of that stop"
+    require(at == "tip" and side == 1, "stop", f"is at {at!r}, side {side:+d}; {words}, so {hint}")
+    return stops[0]
 
 
 def rows_of(stops: tuple[Stop, ...], model: ModalModel) -> list[np.ndarray]:

@@ -1,6 +1,6 @@
 """States and motions as named arrays.
 
-A modal state is a displacement q_k [m kg^0.5] and a velocity q_k' [m kg^0.5 / s] of each mode.
+A modal state is a displacement q_k [kg^(1/2) m] and a velocity q_k' [kg^(1/2) m/s] of each mode.
 ``ImpactOscillator.tip`` gives the displacement of the tip relative to the base.
 """
 
@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field, fields
 from enum import IntEnum
+from inspect import Parameter, Signature
 from pathlib import Path
 
 import numpy as np
@@ -26,26 +27,58 @@ from beam.parameters import (
 from contact.impacts import Impacts
 from contact.oscillator import ImpactOscillator
 
+BY_NUMBER = Signature([Parameter("value", Parameter.POSITIONAL_ONLY)])
+"""How `help` shows that a member of the enumerations below is made: of its number."""
+
 
 class Regime(IntEnum):
     """How the stop acts on the tip.
 
-    OUTSIDE: off the wall.  CONTACT: pushed by the wall.  INSIDE: behind the wall's rest position, without
-    force.  SUSTAINED: held on the wall by the motion.  WAITING: on the wall, until a delayed rebound.
+    Parameters
+    ----------
+    value : int
+        Number of a regime, from 0 to 4.
+
+    Attributes
+    ----------
+    OUTSIDE : Regime
+        0: the tip is off the wall.
+    CONTACT : Regime
+        1: the wall pushes the tip.
+    INSIDE : Regime
+        2: the tip is behind the wall's rest position, without force.
+    SUSTAINED : Regime
+        3: the motion holds the tip on the wall.
+    WAITING : Regime
+        4: the tip is on the wall until a delayed rebound.
     """
 
     OUTSIDE, CONTACT, INSIDE, SUSTAINED, WAITING = range(5)
+    __signature__ = BY_NUMBER
 
 
 class ImpactKind(IntEnum):
     """Kind of a touch of the tip.
 
-    IMPACT: a touch that acts on the motion.  GRAZE: a touch without effect, within rounding.  STAY: a stay on
-    the wall after accumulated impacts, from the end of their last hop on.  UNDER_WAY: a contact that had
-    begun before the run.
+    Parameters
+    ----------
+    value : int
+        Number of a kind, from 0 to 3.
+
+    Attributes
+    ----------
+    IMPACT : ImpactKind
+        0: a touch that acts on the motion.
+    GRAZE : ImpactKind
+        1: a touch without effect, within rounding.
+    STAY : ImpactKind
+        2: a stay on the wall after accumulated impacts, from the end of their last hop on.
+    UNDER_WAY : ImpactKind
+        3: a contact that had begun before the run.
     """
 
     IMPACT, GRAZE, STAY, UNDER_WAY = range(4)
+    __signature__ = BY_NUMBER
 
 
 OUTSIDE, CONTACT, INSIDE, SUSTAINED, WAITING = map(int, Regime)
@@ -60,17 +93,41 @@ class State:
 
     Parameters
     ----------
-    displacement, velocity : ndarray, shape (n_modes,)
-        Modal coordinates [m kg^0.5] and their rates [m kg^0.5 / s].
+    displacement, velocity : array_like, shape (n_modes,)
+        Modal coordinates [kg^(1/2) m] and their rates [kg^(1/2) m/s].
     time : float
         Time since the start of the drive, base at z = Z sin(2 pi f time) [s].
-    regime : Regime, or tuple of Regime
-        Of the stop `stop`, or of several stops that act at the same time, one for each.  A number from 0 to 4
-        is taken too.
+    regime : Regime, int or tuple of Regime
+        Regime of the stop `stop`, or its number.  If several stops act at the same time, the regime of each
+        stop of the oscillator.
     wait, rebound : float
-        While waiting, the time still to wait [s] and the tip velocity with which it then leaves [m/s].
+        Time still to wait [s], and velocity with which the tip then leaves [m/s], in the regime WAITING.
     stop : int
-        Number of the stop that acts, unless the regime is OUTSIDE.
+        Number of the stop that acts, from 0 on; without a meaning if the regime is OUTSIDE.
+
+    Raises
+    ------
+    ValueError
+        If an array has another shape, a number is not finite, or a regime is unknown.
+    TypeError
+        If an entry is no number.
+
+    See Also
+    --------
+    simulate : The motion from a state.
+    Trajectory : A motion, with its state at the `end`.
+    StroboscopicMap : The map from the state at one strobe to the next.
+
+    Examples
+    --------
+    One mode, displaced by 1 mm and at rest, and a spring of two modes at rest:
+
+    >>> from contact import State
+    >>> state = State(displacement=[1e-3], velocity=[0.0])
+    >>> state.displacement, state.time
+    (array([0.001]), 0.0)
+    >>> State.rest(2).displacement
+    array([0., 0.])
     """
 
     displacement: np.ndarray
@@ -105,32 +162,66 @@ class State:
 
     @property
     def regimes(self) -> dict[int, int]:
-        """The regime of each stop that is named."""
+        """Regime of each stop that is named, by the number of the stop."""
         return dict(enumerate(self.regime)) if isinstance(self.regime, tuple) else {self.stop: self.regime}
 
     @staticmethod
     def rest(n_modes: int) -> State:
-        """The straight spring at rest, at time zero."""
+        """Return the state of the straight spring at rest, at time zero."""
         size = require_whole("n_modes", n_modes, "modes")
         return State(displacement=np.zeros(size), velocity=np.zeros(size))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Trajectory:
-    """A motion of an `oscillator`: strobed states, sampled states, every impact, and the state at the `end`.
+    """A motion of an oscillator: strobed states, sampled states, every impact, and the state at the end.
+
+    `simulate` returns it.
 
     Parameters
     ----------
+    oscillator : ImpactOscillator
+        The oscillator that moved.
+    end : State
+        State at the end of the run; a further run can start from it.
     strobe_time : ndarray, shape (n_strobes,)
         Times of the strobes passed, the start excluded [s].
     strobe_displacement, strobe_velocity : ndarray, shape (n_strobes, n_modes)
-        Modal states at the strobes.
+        Modal coordinates [kg^(1/2) m] and their rates [kg^(1/2) m/s] at the strobes.
     strobe_impacts : ndarray of int, shape (n_strobes,)
-        Impacts that began since the strobe before (or the start).
-    time, displacement, velocity : ndarray, shapes (n_times,) and (n_times, n_modes)
-        The requested times [s], and the states at them.
-    impacts, evaluations : Impacts, int
-        Every touch, also grazes and stays; and the steps, or flights and sampled positions, of the method.
+        Number of impacts that began since the strobe before, or since the start.
+    time : ndarray, shape (n_times,)
+        Requested times [s].
+    displacement, velocity : ndarray, shape (n_times, n_modes)
+        Modal coordinates [kg^(1/2) m] and their rates [kg^(1/2) m/s] at these times.
+    impacts : Impacts
+        All touches, also grazes and stays.
+    evaluations : int
+        Number of steps of the method, or of its flights and sampled positions.
+
+    See Also
+    --------
+    simulate : The function that returns a trajectory.
+    Impacts : The touches of a motion.
+    collisions : The effect of each collision on mode 1.
+    ImpactOscillator.tip : The displacement or velocity of the tip.
+
+    Examples
+    --------
+    The tip displacement of the letter's spring at two times, and the number of its impacts:
+
+    >>> from beam import single_mode
+    >>> from contact import HarmonicDrive, ImpactOscillator, NewtonRestitution, Stop, simulate
+    >>> law = NewtonRestitution(local_restitution=0.1)
+    >>> oscillator = ImpactOscillator(
+    ...     model=single_mode(free_period=40.80e-3, decay_rate=3.56),
+    ...     stop=Stop(gap=11.9e-3, law=law),
+    ...     drive=HarmonicDrive(frequency=22.2),
+    ... ).with_excess(0.01)
+    >>> trajectory = simulate(oscillator, periods=10, times=[0.1, 0.2])
+    >>> tip = oscillator.tip(trajectory.displacement)
+    >>> print((1e3 * tip).round(2), "mm,", len(trajectory.impacts), "impacts")
+    [7.62 4.5 ] mm, 3 impacts
     """
 
     oscillator: ImpactOscillator
@@ -146,7 +237,7 @@ class Trajectory:
     evaluations: int = 0
 
     def save(self, path: str | Path) -> None:
-        """Write the motion into a file of the kind that its name ends with.
+        """Write the motion into a file, ``.npz`` or ``.csv`` by the end of its name.
 
         ``.npz`` keeps every number, for `load`; ``.csv`` has one line a touch, for other programs.
         ValueError is raised for another ending.
@@ -162,7 +253,7 @@ class Trajectory:
 
     @staticmethod
     def load(path: str | Path, oscillator: ImpactOscillator) -> Trajectory:
-        """The motion that `save` has written into an ``.npz`` file.
+        """Return the motion that `save` has written into an ``.npz`` file.
 
         The file does not keep the oscillator, since a law may hold functions.  ValueError is raised if
         `oscillator` has other numbers than the one that moved, or if the file holds no such motion.

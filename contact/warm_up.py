@@ -12,7 +12,8 @@ from multiprocessing import get_context
 
 from beam import single_mode
 from contact.drive import HarmonicDrive
-from contact.laws import ContactLaw, HertzContact, NewtonRestitution
+from contact.hertz import HertzContact
+from contact.laws import ContactLaw, NewtonRestitution
 from contact.maps.stroboscope import StroboscopicMap
 from contact.orbits.shooting import Shooting
 from contact.oscillator import ImpactOscillator

@@ -14,16 +14,38 @@ MOST_STORED = 2.0**28  # largest number of values in the strobes of one run: 2 G
 
 @dataclass(frozen=True, eq=False)
 class Plan:
-    """Start, end and sample times of a simulation."""
+    """Start, end and sample times of a simulation.
+
+    `contact.simulate` makes it for the method.  Each time is kept as two numbers.  The first is the number of
+    a stretch, which goes from one strobe to the next.  The second is a clock, the time since the strobe that
+    begins the stretch.
+
+    Parameters
+    ----------
+    start : State
+        State at the start.
+    length : float
+        Duration of the run [s].
+    first, last : int
+        Stretches of start and end.
+    clock, clock_end : float
+        Clocks of start and end [s].
+    times : ndarray, shape (n_times,)
+        Times at which the state is wanted [s].
+    sample_stretch : ndarray of int, shape (n_times,)
+        Stretches of these times.
+    sample_clock : ndarray, shape (n_times,)
+        Clocks of these times [s].
+    """
 
     start: State
-    length: float  # duration [s]
-    first: int  # stretches of start and end
+    length: float
+    first: int
     last: int
-    clock: float  # clocks of start and end [s]
+    clock: float
     clock_end: float
-    times: np.ndarray  # at which the state is wanted [s], shape (n_times,)
-    sample_stretch: np.ndarray  # the same as stretches and clocks [s]
+    times: np.ndarray
+    sample_stretch: np.ndarray
     sample_clock: np.ndarray
 
 

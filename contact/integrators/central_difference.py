@@ -64,7 +64,22 @@ def central_difference(grid, memory):
 
 @dataclass(frozen=True, kw_only=True)
 class CentralDifference(FixedStep):
-    """Central difference with a fixed step; `lagged` damping is that at the half step before, not centred."""
+    """Central difference with a fixed step, for contact forces.
+
+    Parameters
+    ----------
+    step : float
+        Time step, above zero [s].
+    beyond_limit : bool
+        Whether to run even where the step is unstable, to study what happens there.
+    lagged : bool
+        Whether the damping takes the velocity of the half step before instead of the mean of both.
+
+    Raises
+    ------
+    ValueError
+        If the step is no finite number above zero.
+    """
 
     lagged: bool = False
     name: ClassVar[str] = "central-difference"

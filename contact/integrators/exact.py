@@ -32,7 +32,7 @@ MOST_POINTS = 10**9  # largest number of samples per drive period, which take so
 
 @dataclass(frozen=True, kw_only=True)
 class Exact(Integrator):
-    """Exact motion under any contact law."""
+    """Exact motion under any contact law, event by event; it has no fixed time step."""
 
     name: ClassVar[str] = "exact"
     order: ClassVar[float] = math.inf
@@ -47,9 +47,21 @@ class Exact(Integrator):
 
 @dataclass(frozen=True, kw_only=True)
 class SampledFlight(Integrator):
-    """Exact flights, crossings detected by sampling.
+    """Exact flights, with crossings detected by sampling.
 
-    `points` are the samples per drive period [1]; without a drive, per period of the lowest mode.
+    A touch between two samples can be missed.
+
+    Parameters
+    ----------
+    points : int
+        Number of samples per drive period, one or more; without a drive, per period of the lowest mode.
+
+    Raises
+    ------
+    ValueError
+        If `points` is no whole number from 1 to 10^9.
+    TypeError
+        If `points` is no number.
     """
 
     points: int

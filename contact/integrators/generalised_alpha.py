@@ -217,16 +217,30 @@ def chung_hulbert(rho: float) -> AlphaParameters:
 
 @dataclass(frozen=True, kw_only=True)
 class GeneralisedAlpha(FixedStep):
-    """The generalised-alpha method with a fixed step, contact force at the end of the step.
+    """The generalised-alpha method with a fixed step, for contact forces.
 
-    ``newmark``, ``hht`` and ``with_dissipation`` choose its numbers.
+    It takes the contact force at the end of the step.  ``newmark``, ``hht`` and ``with_dissipation`` make the
+    known members of the family.
 
     Parameters
     ----------
-    beta, gamma : float
-        beta zero or more, gamma above zero [1].
+    step : float
+        Time step, above zero [s].
+    beyond_limit : bool
+        Whether to run even where the step is unstable, to study what happens there.
+    beta : float
+        Weight of the new acceleration in the displacement, zero or more [1].
+    gamma : float
+        Weight of the new acceleration in the velocity, above zero [1].
     alpha_m, alpha_f : float
         Weights of the old acceleration and the old force, below 1 [1].
+
+    Raises
+    ------
+    ValueError
+        If the step is no finite number above zero, or a weight is out of its range.
+    TypeError
+        If a weight is no number.
     """
 
     beta: float = 0.25
@@ -248,19 +262,19 @@ class GeneralisedAlpha(FixedStep):
     def newmark(
         *, step: float, beta: float = 0.25, gamma: float = 0.5, beyond_limit: bool = False
     ) -> GeneralisedAlpha:
-        """Newmark's method: beta = 1/4 is the trapezoidal rule, 1/6 linear acceleration, 0 explicit."""
+        """Return Newmark's method: beta 1/4 is the trapezoidal rule, 1/6 linear acceleration, 0 explicit."""
         return GeneralisedAlpha(step=step, beta=beta, gamma=gamma, beyond_limit=beyond_limit)
 
     @staticmethod
     def hht(*, step: float, alpha: float, beyond_limit: bool = False) -> GeneralisedAlpha:
-        """The method of Hilber, Hughes and Taylor; `alpha` from 0 to 1/3 is minus that of their paper."""
+        """Return Hilber, Hughes and Taylor's method; `alpha`, from 0 to 1/3, is minus that of their paper."""
         require_within("alpha of HHT-alpha, its sign turned,", alpha, "[1]", low=0, high=1.0 / 3.0)
         beta, gamma = 0.25 * (1.0 + alpha) ** 2, 0.5 + alpha
         return GeneralisedAlpha(step=step, beta=beta, gamma=gamma, alpha_f=alpha, beyond_limit=beyond_limit)
 
     @staticmethod
     def with_dissipation(*, step: float, rho: float, beyond_limit: bool = False) -> GeneralisedAlpha:
-        """Chung and Hulbert's choice; a step damps infinite frequencies by the factor `rho`, from 0 to 1."""
+        """Return Chung and Hulbert's method; a step damps infinite frequencies by `rho`, from 0 to 1 [1]."""
         alpha_m, alpha_f, beta, gamma, _eta = chung_hulbert(rho)
         return GeneralisedAlpha(
             step=step, beta=beta, gamma=gamma, alpha_m=alpha_m, alpha_f=alpha_f, beyond_limit=beyond_limit

@@ -21,22 +21,25 @@ FORCE_LAWS = tuple(code for code, file in LAWS.items() if CONTACT in file.REGIME
 
 
 class Integrator:
-    """A method for the motion with contacts; its children are final.
+    """A method for the motion with contacts.
+
+    Users take one of its children, such as `Exact` or `CentralDifference`.
 
     Attributes
     ----------
     name : str
-        Its name in ``INTEGRATORS``.
+        Name of the method in ``INTEGRATORS``.
     order : float
-        Power of the step with which the error of a smooth motion falls; infinite for an exact method, NaN if
-        a tolerance sets the error.
+        Power of the step with which the error of a smooth motion falls [1].  It is infinite for an exact
+        method, and NaN if a tolerance sets the error.
     laws : tuple of int
-        Codes of the contact laws that it accepts.
+        Codes of the contact laws that the method accepts.
     certified : bool
-        Whether it proves that no touch is missed.
+        Whether the method proves that no touch is missed.
     accuracy : float
-        Bound of the relative error of the state after a collision, for an exact method and contacts up to 1e7
-        times as stiff as the spring; it grows as the root of that.  NaN if a step or tolerance decides.
+        Bound of the relative error of the state after a collision with an exact method [1].  It holds for
+        contacts up to 1e7 times as stiff as the spring; the error grows as the square root of the stiffness.
+        The bound is NaN if a step or a tolerance sets the error.
     """
 
     name: ClassVar[str]
@@ -46,16 +49,16 @@ class Integrator:
     accuracy: ClassVar[float] = math.nan
 
     def accepts(self, law: int) -> bool:
-        """Whether the method knows the contact law with this code."""
+        """Return whether the method accepts the contact law with this code."""
         return law in self.laws
 
     def critical_stiffness(self, numbers: Numbers) -> float:
-        """Largest tangent stiffness of a lasting contact for which the method is stable [N/m].
+        """Return the largest tangent stiffness of a lasting contact for which the method is stable [N/m].
 
         Infinite for an unconditionally stable method, below zero if it is unstable even in flight.
         """
         return math.inf
 
     def follow(self, oscillator: ImpactOscillator, plan: Plan) -> Trajectory:
-        """The motion of `plan`; ``contact.simulation.simulate`` has checked the law before."""
+        """Return the motion of `plan`; ``contact.simulate`` has checked the law before."""
         raise NotImplementedError

@@ -135,9 +135,23 @@ def through_percussions(grid, prepared):
 
 @dataclass(frozen=True, kw_only=True)
 class MoreauJean(FixedStep):
-    """Moreau and Jean's time stepping with a fixed step.
+    """Moreau and Jean's time stepping with a fixed step, for Newton's law.
 
-    `theta` is the weight of the end of the step, from 0 to 1 [1]; 1/2 keeps the energy, 1 damps most.
+    Parameters
+    ----------
+    step : float
+        Time step, above zero [s].
+    beyond_limit : bool
+        Whether to run even where the step is unstable, to study what happens there.
+    theta : float
+        Weight of the end of the step, from 0 to 1 [1]; 1/2 keeps the energy, 1 damps most.
+
+    Raises
+    ------
+    ValueError
+        If the step is no finite number above zero, or `theta` lies outside 0 to 1.
+    TypeError
+        If `theta` is no number.
     """
 
     theta: float = 0.5

@@ -36,9 +36,23 @@ from contact.integrators.moreau_jean import MoreauJean, before_percussions, thro
 
 @dataclass(frozen=True, kw_only=True)
 class NonsmoothGeneralisedAlpha(FixedStep):
-    """The nonsmooth generalised-alpha method with a fixed step.
+    """The nonsmooth generalised-alpha method with a fixed step, for Newton's law.
 
-    `rho` is the factor by which a step damps infinite frequencies, from 0 to 1 [1]; 1 damps nothing.
+    Parameters
+    ----------
+    step : float
+        Time step, above zero [s].
+    beyond_limit : bool
+        Whether to run even where the step is unstable, to study what happens there.
+    rho : float
+        Factor by which a step damps infinite frequencies, from 0 to 1 [1]; 1 damps nothing.
+
+    Raises
+    ------
+    ValueError
+        If the step is no finite number above zero, or `rho` lies outside 0 to 1.
+    TypeError
+        If `rho` is no number.
     """
 
     rho: float

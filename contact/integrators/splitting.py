@@ -155,9 +155,23 @@ def _limit(rows: tuple[tuple[float, ...], ...], order: int, step: float, damping
 
 @dataclass(frozen=True, kw_only=True)
 class Splitting(FixedStep):
-    """Symmetric kick-flow-kick splitting of `order` 2 or 4.
+    """Symmetric splitting into exact flights and kicks of the contact force, with a fixed step.
 
     The step may be longer than the periods of high modes.
+
+    Parameters
+    ----------
+    step : float
+        Time step, above zero [s].
+    beyond_limit : bool
+        Whether to run even where the step is unstable, to study what happens there.
+    order : {2, 4}
+        Order of the method in smooth motion [1].
+
+    Raises
+    ------
+    ValueError
+        If the step is no finite number above zero, or `order` is neither 2 nor 4.
     """
 
     order: int = 2  # type: ignore[misc]
@@ -171,7 +185,7 @@ class Splitting(FixedStep):
             raise InvalidValue(f"order is {self.order!r}; it must be 2 or 4")
 
     def critical_stiffness(self, numbers: Numbers) -> float:
-        """Lowest stiffness of a lasting contact at which a step is unstable [N/m].
+        """Return the lowest stiffness of a lasting contact at which a step is unstable [N/m].
 
         It is a tangent stiffness, with the damping of the first touch.  Under Hunt and Crossley's law the
         damping grows with the depth; it raises the limit and is left out.

@@ -22,7 +22,8 @@ from numpy.typing import NDArray
 from beam import ModalChange, ModalModel
 from beam.parameters import Array, final, require, require_array, require_each, require_kind, require_within
 from contact.flight.variation import Variation, variation
-from contact.oscillator import ImpactOscillator, dynamic_stiffness, require_one_stop
+from contact.oscillator import ImpactOscillator, require_one_stop
+from contact.steady_response import dynamic_stiffness
 
 ARRAYS = ("omega", "decay_rate", "phi", "participation")
 Path = Callable[[float], ImpactOscillator]

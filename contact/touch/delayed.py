@@ -51,23 +51,35 @@ DELAYED = 3  # the code of this law
 @final
 @dataclass(frozen=True, kw_only=True, eq=False)
 class DelayedRestitution(ContactLaw):
-    """The tip stays on the wall for `delay` and leaves with -`restitution` times its approach velocity.
+    """Delayed impact: the tip waits on the wall, then leaves with -`restitution` times its approach velocity.
 
-    For one mode only: there the two numbers say all that a collision does.  The wait is kept whatever pulls
-    at the tip.  Without the wall it would be back after 2 v/a, a its deceleration at the touch: a longer wait
-    holds it against that pull and gives the motion energy, so that orbits of period 1 appear far below
-    grazing (stable ones if the wait is long, ``tests/contact/test_delayed_orbits.py``).  With a constant
-    delay every touch slower than a `delay`/2 is of this kind, and one of vanishing speed is no graze; a delay
-    that falls at least as fast as the speed has none.
+    The law holds for one mode only, where two numbers describe the whole effect of a collision.
 
     Parameters
     ----------
     restitution : float or callable
-        From 0 to 1, or a function of the approach speed [m/s] [1].
+        Restitution from 0 to 1 [1], or a function that returns it for an approach speed [m/s].
     delay : float or callable
-        Zero or more, or a function of the approach speed [m/s] [s].
+        Time on the wall, zero or more [s], or a function that returns it for an approach speed [m/s].
     speeds : (float, float)
         Range of approach speeds in which functions are sampled; beyond it they keep their end values [m/s].
+
+    Raises
+    ------
+    ValueError
+        If a restitution lies outside 0 to 1, a delay is negative or not finite, or `speeds` do not rise.
+    TypeError
+        If a restitution or a delay is neither a number nor a function that returns one.
+
+    Notes
+    -----
+    The tip keeps waiting whatever force pulls at it.  Let v be its approach speed, and a its deceleration at
+    the touch.  Without the wall the tip would be back after the time ``2 * v / a``.  A longer wait holds the
+    tip against the pull and adds energy to the motion.  Orbits of period 1 then appear far below grazing, and
+    are stable if the wait is long (``tests/contact/test_delayed_orbits.py``).
+
+    Under a constant delay this happens in every touch slower than ``a * delay / 2``, and a touch of vanishing
+    speed is no graze.  A delay that falls at least as fast as the speed has no such touches.
     """
 
     restitution: float | SpeedFunction

@@ -36,12 +36,19 @@ class PowerContact(ContactLaw):
     Parameters
     ----------
     stiffness : float
-        k, above zero [N/m^p].
+        Stiffness k of the contact, above zero [N/m^p].
     exponent : float
-        p, from 1 to 3 [1]: a fraction with a denominator of at most 8.  With damping (p - 1)/2 must be such a
-        fraction: all halves, thirds and quarters are valid in both cases.
+        Exponent p, from 1 to 3 [1]: a fraction with a denominator of at most 8.  With damping (p - 1)/2 must
+        be such a fraction.  All halves, thirds and quarters are valid in both cases.
     damping : float
-        c, zero or more [N s/m^((p+1)/2)].
+        Constant c of the dashpot, zero or more [N s/m^((p+1)/2)].
+
+    Raises
+    ------
+    ValueError
+        If a number is out of its range or not finite, or the exponent is no such fraction.
+    TypeError
+        If one of them is no number.
     """
 
     stiffness: float
@@ -82,10 +89,11 @@ class PowerContact(ContactLaw):
     def with_restitution(
         *, stiffness: float, exponent: float, restitution: float, mass: float
     ) -> PowerContact:
-        """The law under which a free `mass` m [kg] leaves with `restitution` times its approach speed.
+        """Return the law under which a free `mass` [kg] leaves with `restitution` times its approach speed.
 
-        `restitution` lies above 0 and is at most 1, and holds at every speed: c = 2 zeta sqrt((p + 1)/2 k m)
-        with zeta of ``contact.damping_ratio``.  `mass` is that of ``LinearContact.with_restitution``.
+        `restitution` lies above 0 and is at most 1, and holds at every speed.  The dashpot of a mass m is
+        c = 2 zeta sqrt((p + 1)/2 k m), with zeta of ``contact.damping_ratio``.  The docstring of
+        ``LinearContact.with_restitution`` says which mass a tip has.
         """
         elastic = PowerContact(stiffness=stiffness, exponent=exponent)
         mass = require_within("mass", mass, "kg", above=0)

@@ -11,8 +11,8 @@ from whole_motions import pressed
 from beam import ModalModel
 from contact import HarmonicDrive, NordmarkMap, Stop, StroboscopicMap
 from contact.collision import before_collision, collisions, first_collision
+from contact.hertz import HertzContact
 from contact.integrators import CentralDifference, Integrator
-from contact.laws import HertzContact
 from contact.orbits import KickFamily
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate

@@ -13,7 +13,8 @@ from simulated_orbit import beam
 from beam import InvalidValue
 from contact import ImpactOscillator, Impacts, State
 from contact.collision import before_collision, collisions, first_collision
-from contact.laws import ContactLaw, HertzContact, HuntCrossley, LinearContact
+from contact.hertz import HertzContact, HuntCrossley
+from contact.laws import ContactLaw, LinearContact
 from contact.simulation import simulate
 
 CASES = [(6, newton(0.3), 21.5), (6, HertzContact(stiffness=3e7), 21.5), (2, newton(1.0), 12.0)]

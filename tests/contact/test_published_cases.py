@@ -9,7 +9,8 @@ import pytest
 from oscillators import modes_on_stop, newton
 
 from beam import UniformBeam, exact_modes
-from contact.laws import HERTZ_TIME, ContactLaw, HertzContact, HuntCrossley, LinearContact
+from contact.hertz import HERTZ_TIME, HertzContact, HuntCrossley
+from contact.laws import ContactLaw, LinearContact
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
 from contact.trajectory import State

@@ -7,8 +7,9 @@ import pytest
 from oscillators import equation_1, modes_on_stop, newton, spring
 from whole_motions import falling_body
 
+from contact.hertz import HertzContact, HuntCrossley
 from contact.integrators import SampledFlight
-from contact.laws import HertzContact, HuntCrossley, LinearContact, NewtonRestitution
+from contact.laws import LinearContact, NewtonRestitution
 from contact.simulation import simulate
 from contact.touch.delayed import DelayedRestitution
 from contact.trajectory import State

@@ -8,7 +8,8 @@ from oscillators import GAMMA, OMEGA, PHI, modes_on_stop, newton, slow
 
 from beam import Point
 from contact import ImpactOscillator, PowerContact, State, Stop, TouchedAtOnce, simulate
-from contact.laws import HertzContact, HuntCrossley, LinearContact
+from contact.hertz import HertzContact, HuntCrossley
+from contact.laws import LinearContact
 
 LAWS = {
     "linear": LinearContact(stiffness=4e4),

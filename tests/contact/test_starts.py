@@ -10,7 +10,8 @@ from scipy.integrate import solve_ivp
 
 from beam import InvalidValue
 from contact import PowerContact, Regime, State, simulate
-from contact.laws import HertzContact, HuntCrossley, LinearContact
+from contact.hertz import HertzContact, HuntCrossley
+from contact.laws import LinearContact
 
 STIFF = 200.0
 LAWS = {

@@ -21,8 +21,9 @@ from contact import (
     Stop,
     simulate,
 )
+from contact.hertz import HertzContact, HuntCrossley
 from contact.integrators import CentralDifference, Integrator, MoreauJean, Splitting
-from contact.laws import ContactLaw, HertzContact, HuntCrossley, LinearContact
+from contact.laws import ContactLaw, LinearContact
 
 K, G = 1e5, 9.81
 HERTZ = HertzContact(stiffness=1e8)
