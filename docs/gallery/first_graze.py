@@ -9,7 +9,7 @@ root: the approach speed of the first impact grows as the square root of the exc
 """
 
 # %%
-# The free spring oscillates with a period of 40.80 ms.  The base moves at 21.5 Hz, and the stop is 11.9 mm away.
+# The free spring oscillates with a period of 40.80 ms.  The base moves at 21.5 Hz, and the gap is 11.9 mm.
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -24,7 +24,7 @@ spring = ImpactOscillator(
 print(f"The tip grazes the stop when the base moves by {1e3 * spring.grazing_amplitude():.3f} mm.")
 
 # %%
-# Both motions start from the steady motion, as if there were no stop.  The later part of each is drawn.
+# Both start from the steady motion that the spring would have without a stop.  The later part is drawn.
 times = spring.period * np.linspace(40, 52, 3001)
 motions = {}
 for excess in (-1e-3, 1e-3):
@@ -39,8 +39,9 @@ print("Impacts in each drive period:", *motions[1e-3].strobe_impacts[-8:])
 # %%
 # The dots are the impacts.
 figure, panels = plt.subplots(2, 1, sharex=True, sharey=True, figsize=(7.5, 4.8), layout="constrained")
-words = ("drive 0.1 % below grazing: no impact", "drive 0.1 % above grazing: one impact in four drive periods")
-for axes, motion, title, colour in zip(panels, motions.values(), words, ("#0072B2", "#D55E00"), strict=True):
+words = "drive 0.1 % below grazing: no impact", "drive 0.1 % above grazing: one impact in four periods"
+colours = "#0072B2", "#D55E00"
+for axes, motion, title, colour in zip(panels, motions.values(), words, colours, strict=True):
     axes.plot(times / spring.period - 40, 1e3 * spring.tip(motion.displacement), color=colour)
     axes.axhspan(11.9, 15, color="0.8")
     axes.text(11.9, 13.3, "stop", ha="right", va="center")

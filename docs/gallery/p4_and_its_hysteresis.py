@@ -25,7 +25,7 @@ spring = ImpactOscillator(
 strobed = StroboscopicMap(oscillator=spring)
 
 # %%
-# The amplitude is raised and lowered in small steps.  Each step starts from the last state of the step before.
+# The amplitude is raised and lowered in small steps.  Each step starts from the last state of the one before.
 excesses = np.linspace(-0.0194, 0.0070, 67)
 record = dict(observe=strobed.tip, settle_cycles=2000, record_cycles=8)
 up = orbit_diagram(strobed, excesses, strobed.at(excesses[0]).steady(), **record)
@@ -48,6 +48,7 @@ for place, name in ((100 * fold.excess, " fold"), (0, " grazing")):
     axes.text(place, 2.2, name)
 axes.text(-1.9, -0.8, "raised: no impact", color="#0072B2")
 axes.text(-0.65, 0.3, "lowered: p4 until the fold", color="#D55E00", ha="center")
-axes.text(0.7, 0.3, "p4", ha="right")
-axes.set(xlabel="drive amplitude above grazing (%)", ylabel="tip displacement at each strobe (mm)", ylim=(-4.6, 2.6))
+axes.text(0.7, 0.3, "p4 both ways", ha="right")
+axes.set(xlabel="drive amplitude above grazing (%)", ylabel="tip displacement at each strobe (mm)")
+axes.set_ylim(-4.6, 2.6)
 plt.show()

@@ -18,12 +18,12 @@ from contact import HarmonicDrive, HertzContact, ImpactOscillator, Stop, simulat
 
 section = StripSection(material=STEEL, width=0.02, thickness=0.002)
 modes = natural_modes(assemble(cantilever(length=0.3, section=section)), 8)
-model = reduce(modes, ConstantRatio(ratio=0.01))
+model, law = reduce(modes, ConstantRatio(ratio=0.01)), HertzContact(stiffness=5e9)
 
 
 def motion(gap, amplitude, times=None):
     """Return the motion from rest, in eight drive periods."""
-    stop, drive = Stop(gap=gap, law=HertzContact(stiffness=5e9)), HarmonicDrive(frequency=15, amplitude=amplitude)
+    drive, stop = HarmonicDrive(frequency=15, amplitude=amplitude), Stop(gap=gap, law=law)
     return simulate(ImpactOscillator(model=model, stop=stop, drive=drive), periods=8, times=times)
 
 
@@ -47,6 +47,7 @@ shown = np.ma.masked_equal(force, 0)
 colours = axes.pcolormesh(1e3 * amplitudes, 1e3 * gaps, shown, cmap="viridis")
 figure.colorbar(colours, label="largest contact force (N)")
 axes.plot(1e3 * amplitudes, 1e3 * factor * amplitudes, "--", color="#D55E00")
-axes.text(0.5, 6, "stop out of reach:\nno force", ha="center")
+axes.text(0.4, 7, "stop out of reach:\nno force", ha="center")
+axes.text(1.2, 5.9, "largest free\ndisplacement", color="#D55E00", ha="right")
 axes.set(xlabel="base amplitude (mm)", ylabel="gap (mm)", ylim=(0, 9.4))
 plt.show()

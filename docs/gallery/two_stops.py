@@ -31,12 +31,13 @@ def motion(amplitude):
 small, large = motion(6e-3), motion(9e-3)
 for amplitude, impacts in ((6, small.impacts), (9, large.impacts)):
     (first, second), speeds = impacts.stop[-2:], impacts.approach[-2:]
-    print(f"base {amplitude} mm: stop {first} at {speeds[0]:.3f} m/s, then stop {second} at {speeds[1]:.3f} m/s")
+    print(f"base {amplitude} mm: stop {first} at {speeds[0]:.3f} m/s, stop {second} at {speeds[1]:.3f} m/s")
 
 # %%
 # The speeds at both stops agree up to a base amplitude of 7.8 mm, where they separate.
 amplitudes = np.linspace(2e-3, 9.2e-3, 73)
-speeds = [[one.impacts.approach[one.impacts.stop == k][-1] for k in (0, 1)] for one in map(motion, amplitudes)]
+found = [motion(amplitude).impacts for amplitude in amplitudes]
+speeds = [[impacts.approach[impacts.stop == k][-1] for k in (0, 1)] for impacts in found]
 
 figure, (left, right) = plt.subplots(1, 2, figsize=(9.5, 4.2), layout="constrained")
 left.plot(34 * times - 398, 1e3 * small.oscillator.tip(small.displacement), "k")
@@ -45,14 +46,13 @@ left.axhspan(8, 10, color="#0072B2", alpha=0.3)
 left.axhspan(-10, -8, color="#D55E00", alpha=0.3)
 left.text(0.05, 8.9, "upper stop", va="center")
 left.text(0.05, -9.1, "lower stop", va="center")
-left.text(1.45, 4.2, "base 6 mm")
-left.text(0.86, -4.6, "base 9 mm", color="0.4")
+left.set_title("base 6 mm, and 9 mm (dashed)", fontsize="medium")
 left.set(xlabel="time (drive periods)", ylabel="tip displacement (mm)", xlim=(0, 2), ylim=(-10, 10))
 right.plot(1e3 * amplitudes, speeds)
 for line, colour in zip(right.lines, ("#0072B2", "#D55E00"), strict=True):
     line.set_color(colour)
 right.text(8.3, 2.95, "upper stop ", color="#0072B2", ha="right")
-right.text(8.2, 1.85, "lower stop", color="#D55E00")
+right.text(9.2, 1.85, "lower stop", color="#D55E00", ha="right")
 right.text(4.6, 1.7, "both alike ", ha="right")
 right.set(xlabel="base amplitude (mm)", ylabel="approach speed (m/s)")
 plt.show()
