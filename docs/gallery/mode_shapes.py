@@ -3,8 +3,8 @@ Mode shapes of a U
 ==================
 
 A brass strip is folded into a U, clamped at both ends, and carries a ball at its bend.  In a sway mode both
-legs bend to the same side, and the ball moves.  In a breathing mode they bend to opposite sides, and the ball
-stays at rest.  A base that moves sideways excites the sway modes only.
+legs bend to the same side, and the ball moves sideways.  In a breathing mode they bend to opposite sides, and
+the ball moves along the legs only.  A base that moves sideways excites the sway modes only.
 """
 
 # %%

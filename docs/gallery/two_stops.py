@@ -34,7 +34,7 @@ for amplitude, impacts in ((6, small.impacts), (9, large.impacts)):
     print(f"base {amplitude} mm: stop {first} at {speeds[0]:.3f} m/s, stop {second} at {speeds[1]:.3f} m/s")
 
 # %%
-# The speeds at both stops agree up to a base amplitude of 7.8 mm, where they separate.
+# The speeds at both stops agree up to a base amplitude of 7.9 mm, where they separate.
 amplitudes = np.linspace(2e-3, 9.2e-3, 73)
 found = [motion(amplitude).impacts for amplitude in amplitudes]
 speeds = [[impacts.approach[impacts.stop == k][-1] for k in (0, 1)] for impacts in found]
