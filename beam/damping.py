@@ -24,8 +24,7 @@ from .parameters import Array, require, require_kind, require_within
 
 @runtime_checkable
 class Damping(Protocol):
-    """A rule that gives each mode its decay rate: any class with the method `decay_rates`.
-    """
+    """A rule that gives each mode its decay rate: any class with the method `decay_rates`."""
 
     def decay_rates(self, modes: Modes) -> Array:
         """Return the decay rates c [1/s], shape (n_modes,)."""

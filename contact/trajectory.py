@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field, fields
 from enum import IntEnum
-from inspect import Parameter, Signature
 from pathlib import Path
 
 import numpy as np
@@ -27,17 +26,9 @@ from beam.parameters import (
 from contact.impacts import Impacts
 from contact.oscillator import ImpactOscillator
 
-BY_NUMBER = Signature([Parameter("value", Parameter.POSITIONAL_ONLY)])
-"""How `help` shows that a member of the enumerations below is made: of its number."""
-
 
 class Regime(IntEnum):
     """How the stop acts on the tip.
-
-    Parameters
-    ----------
-    value : int
-        Number of a regime, from 0 to 4.
 
     Attributes
     ----------
@@ -54,16 +45,10 @@ class Regime(IntEnum):
     """
 
     OUTSIDE, CONTACT, INSIDE, SUSTAINED, WAITING = range(5)
-    __signature__ = BY_NUMBER
 
 
 class ImpactKind(IntEnum):
     """Kind of a touch of the tip.
-
-    Parameters
-    ----------
-    value : int
-        Number of a kind, from 0 to 3.
 
     Attributes
     ----------
@@ -78,7 +63,6 @@ class ImpactKind(IntEnum):
     """
 
     IMPACT, GRAZE, STAY, UNDER_WAY = range(4)
-    __signature__ = BY_NUMBER
 
 
 OUTSIDE, CONTACT, INSIDE, SUSTAINED, WAITING = map(int, Regime)
