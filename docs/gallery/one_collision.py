@@ -32,7 +32,7 @@ hit = collisions(simulate(beam, start, periods=3), unfinished="drop")[0]
 print(f"restitution {hit.restitution:.2f}, delay {1e3 * hit.delay:.2f} ms, kick {hit.kick:.2f}")
 
 # %%
-# A stop out of reach lets a motion continue.  Mode 1 alone has, in the other modes, their steady motion.
+# A stop out of reach lets a motion continue.  For mode 1 alone, all other modes get their steady motion.
 times = hit.time + np.linspace(-0.4e-3, 0.8e-3, 1201)
 free = replace(beam, stop=replace(stop, gap=0.05))
 motion, incoming = (simulate(one, start, periods=2, times=times) for one in (beam, free))
