@@ -71,7 +71,7 @@ def test_an_example_runs_and_is_right(path, monkeypatch, tmp_path):
         monkeypatch.setenv("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
         monkeypatch.setenv("PYVISTA_OFF_SCREEN", "true")
         monkeypatch.setattr("pyvista.OFF_SCREEN", True)
-        if subprocess.run([sys.executable, "-c", RENDER], stderr=subprocess.DEVNULL).returncode:
+        if subprocess.run([sys.executable, "-c", RENDER], stderr=subprocess.DEVNULL, timeout=100).returncode:
             monkeypatch.setattr("pyvista.Plotter", MagicMock())  # no graphics library is installed
     plt.switch_backend("agg")
     monkeypatch.setattr(plt, "show", lambda: shown.append(plt.gcf()))

@@ -54,7 +54,7 @@ def draw(number):
 
 figure, axes = plt.subplots(figsize=(6, 3.6), layout="constrained")
 drawn = axes.add_collection(collections.PolyCollection([], edgecolors="face", linewidths=0.3))
-axes.set(xlim=(-10, 120), ylim=(-60, 15), aspect="equal", yticks=[], xlabel="mm, 30 times slower")
+axes.set(xlim=(-10, 125), ylim=(-60, 15), aspect="equal", yticks=[], xlabel="mm, 30 times slower")
 draw(0)
 film = animation.FuncAnimation(figure, draw, frames=len(frames), interval=50)
 plt.show()

@@ -4,7 +4,7 @@ One collision
 
 An impact excites the higher modes of a spring.  Its tip then leaves fast and oscillates about the motion of
 the lowest mode, which leaves much more slowly than it came.  A restitution, a time delay and a kick compare
-mode 1 before the collision with mode 1 after it.  Both are continued as if there were no stop.
+mode 1 before the collision with mode 1 after it, both continued as if there were no stop.
 """
 
 # %%
@@ -32,23 +32,23 @@ hit = collisions(simulate(beam, start, periods=3), unfinished="drop")[0]
 print(f"restitution {hit.restitution:.2f}, delay {1e3 * hit.delay:.2f} ms, kick {hit.kick:.2f}")
 
 # %%
-# A far stop lets motions go on.  After the contact, mode 1 keeps its state, and the others become steady.
+# A stop out of reach lets a motion continue.  For mode 1 alone, all other modes get their steady motion.
 times = hit.time + np.linspace(-0.4e-3, 0.8e-3, 1201)
 free = replace(beam, stop=replace(stop, gap=0.05))
 motion, incoming = (simulate(one, start, periods=2, times=times) for one in (beam, free))
 after = np.searchsorted(times, hit.end)
 q, v = incoming.displacement[after].copy(), incoming.velocity[after].copy()
 q[0], v[0] = motion.displacement[after, 0], motion.velocity[after, 0]
-state = replace(start, displacement=q, velocity=v, time=times[after])
-outgoing = simulate(free, state, periods=1, times=times[after:])
+alone = replace(start, displacement=q, velocity=v, time=times[after])
+outgoing = simulate(free, alone, periods=1, times=times[after:])
 
 # %%
 # The delay lasts from the upward crossing of the surface by one motion to the downward crossing by the other.
 figure, axes = plt.subplots(figsize=(7.5, 4.5), layout="constrained")
 blue, red = "#0072B2", "#D55E00"
 for k, one, colour, line in ((0, incoming, blue, "--"), (after, outgoing, blue, "-"), (0, motion, red, "-")):
-    beyond = beam.tip(one.displacement) - stop.gap
-    axes.plot(1e3 * (times[k:] - hit.time), 1e6 * beyond, color=colour, linestyle=line)
+    beyond = 1e6 * (beam.tip(one.displacement) - stop.gap)
+    axes.plot(1e3 * (times[k:] - hit.time), beyond, color=colour, linestyle=line)
 axes.axhspan(0, 160, color="0.88", zorder=0)
 axes.plot([0, 1e3 * hit.delay], [0, 0], "k|-", markersize=12)
 axes.text(-0.38, 10, "plate")
