@@ -88,7 +88,8 @@ class Tip:
     mass : float
         Mass [kg], not negative.
     rotary_inertia : float
-        Moment of inertia about the z axis through the centreline [kg m^2], not negative.
+        Moment of inertia about the z axis through the centreline [kg m^2], not negative.  A ball of radius
+        r with its centre at a distance a has m (2 r^2/5 + a^2); zero is a point mass.
 
     Raises
     ------

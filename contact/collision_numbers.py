@@ -88,7 +88,7 @@ class Collision:
     Notes
     -----
     The virtual motion of the tip is its steady forced motion plus the free motion of mode 1, as if there were
-    no stop.  The incoming one continues the motion before the collision, the outgoing one the motion after it.
+    no stop.  The incoming one continues the motion before the collision, the outgoing one that after it.
 
     - t_in is the time at which the incoming virtual motion crosses the gap upwards, and v_in its velocity.
     - t_out is the time at which the outgoing virtual motion crosses the gap downwards.

@@ -52,6 +52,12 @@ class HertzContact(ContactLaw):
     PowerContact : A force with another power of the depth.
     LinearContact : Spring and dashpot.
 
+    Notes
+    -----
+    The law holds for a smooth ball on a thick plate while both stay elastic and the contact is slow against
+    the waves in them.  No run checks this.  The pressure in the contact is at most 3 N/(2 pi R d), with the
+    radius R of the ball.  How many modes a force needs depends on the contact time: see ``docs/adequacy.md``.
+
     Examples
     --------
     A steel ball with a radius of 2.5 mm hits a thick steel plate at 0.1 m/s:

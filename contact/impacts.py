@@ -37,8 +37,8 @@ class Impacts:
         Times of first touch and release since the strobe that begins this stretch [s].  They are equal for
         an impact law; the second is NaN for a contact that had not ended.
     approach, rebound : ndarray, shape (n_impacts,)
-        Velocities of the tip at both times, positive towards the stop [m/s].  The approach is NaN for a
-        contact that had begun before the run.
+        Velocities of the tip at first touch and at release, positive towards the stop [m/s].  The approach
+        is NaN for a contact that had begun before the run.
     loss : ndarray, shape (n_impacts,)
         Energy that the tip has given to the stop [J].  In a contact that is still closed it includes the
         energy stored in the stop.  A stay has the energy of the hops before it.

@@ -118,6 +118,9 @@ class NewtonRestitution(ContactLaw):
     With one mode this restitution is the letter's tau.  With more modes tau is an outcome of the motion:
     `collisions` measures it.
 
+    An impact acts on all modes at once.  A tip without a mass of its own gets lighter with each further
+    mode, so that results need not converge.  Give the tip its mass, or take a law with a force.
+
     Functions and tables keep their end values beyond their range.  At vanishing speed (hops, grazing,
     Nordmark's map) the value at the lowest speed holds.  A table is interpolated by monotone cubics (F. N.
     Fritsch, J. Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300) and kept as a pair of tuples.

@@ -104,14 +104,15 @@ class State:
 
     Examples
     --------
-    One mode, displaced by 1 mm and at rest, and a spring of two modes at rest:
+    Two modes at rest; and a tip that passes its place of rest at 0.3 m/s, moved by mode 1 alone:
 
     >>> from contact import State
-    >>> state = State(displacement=[1e-3], velocity=[0.0])
-    >>> state.displacement, state.time
-    (array([0.001]), 0.0)
     >>> State.rest(2).displacement
     array([0., 0.])
+    >>> phi = [4.0, 5.0]  # tip values of the modes [kg^(-1/2)], in a model `phi`
+    >>> state = State(displacement=[0.0, 0.0], velocity=[0.3 / phi[0], 0.0])
+    >>> state.velocity @ phi, state.time
+    (np.float64(0.3), 0.0)
     """
 
     displacement: np.ndarray

@@ -11,13 +11,14 @@ import subprocess
 import sys
 from functools import cached_property
 from pathlib import Path
+from types import FunctionType
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent
 os.environ.setdefault("PYVISTA_OFF_SCREEN", "true")
 if not os.environ.get("DISPLAY"):
     os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")  # before vtk is imported
-sys.path.insert(0, str(ROOT))
+sys.path[:0] = [str(HERE), str(ROOT)]
 
 import pyvista  # noqa: E402
 
@@ -64,8 +65,7 @@ sphinx_gallery_conf = {
     "examples_dirs": ["gallery"],
     "gallery_dirs": ["examples"],
     "filename_pattern": r"\.py$",
-    "image_scrapers": ("matplotlib", "pyvista"),
-    "matplotlib_animations": True,
+    "image_scrapers": ("films", "matplotlib", "pyvista"),
     "within_subsection_order": "FileNameSortKey",
     "abort_on_example_error": True,
     "image_srcset": ["2x"],
@@ -107,13 +107,17 @@ def formulas_as_they_stand(app, what, name, obj, options, lines):
     lines[:] = shown
 
 
-def properties_of(module, name):
-    """The public properties of a class: what it can be read for besides its fields."""
-    own = vars(getattr(importlib.import_module(module), name)).items()
-    return [key for key, one in own if isinstance(one, property | cached_property) and not key.startswith("_")]
+def members_of(module, name):
+    """The public properties and the public methods of a class, its own and those of its parents in the packages."""
+    parents = getattr(importlib.import_module(module), name).__mro__
+    ours = [vars(one) for one in parents if one.__module__.partition(".")[0] in ("beam", "contact")]
+    public = {key: one for own in reversed(ours) for key, one in own.items() if not key.startswith("_")}
+    properties = [key for key, one in public.items() if isinstance(one, property | cached_property)]
+    kinds = FunctionType | classmethod | staticmethod
+    return properties, [key for key, one in public.items() if isinstance(one, kinds)]
 
 
-autosummary_context = {"properties_of": properties_of}
+autosummary_context = {"members_of": members_of}
 
 
 def setup(app):

@@ -27,7 +27,7 @@ TEXTS = {path.stem: path.read_text("utf-8") for path in (ROOT / "README.md", *(R
 PLAIN = " ".join(" ".join(TEXTS.values()).split())
 
 
-@pytest.mark.parametrize("name", ["README", "scene", "several_stops"])
+@pytest.mark.parametrize("name", ["README", "scene", "several_stops", "adequacy"])
 def test_the_code_runs_and_prints_what_its_comments_promise(name, capsys):
     (block,) = re.findall(r"```python\n(.*?)```", TEXTS[name], flags=re.DOTALL)
     exec(compile(block, name, "exec"), {})
@@ -35,11 +35,11 @@ def test_the_code_runs_and_prints_what_its_comments_promise(name, capsys):
 
 
 def test_the_program_with_processes_prints_what_is_beside_it(tmp_path):
-    (block,) = re.findall(r"```python\n(.*?)```", TEXTS["collision"], flags=re.DOTALL)
-    (tmp_path / "peak.py").write_text(block)
-    call, place = [sys.executable, str(tmp_path / "peak.py")], os.environ | {"PYTHONPATH": str(ROOT)}
+    (block,) = re.findall(r"```python\n(.*?)```", TEXTS["sweep"], flags=re.DOTALL)
+    (tmp_path / "sweep.py").write_text(block)
+    call, place = [sys.executable, str(tmp_path / "sweep.py")], os.environ | {"PYTHONPATH": str(ROOT)}
     run = subprocess.run(call, env=place, capture_output=True, text=True, timeout=300, check=True)
-    assert re.findall(r"```text\n(.*?)```", TEXTS["collision"], flags=re.DOTALL) == [run.stdout]
+    assert re.findall(r"```text\n(.*?)```", TEXTS["sweep"], flags=re.DOTALL) == [run.stdout]
 
 
 def test_the_readme_is_short_and_every_link_leads_somewhere():

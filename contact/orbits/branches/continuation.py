@@ -153,7 +153,7 @@ def first_event(family: NewtonFamily, start: PeriodicOrbit, lowest: float) -> Ev
 
 
 def fold_of(family: NewtonFamily, near: PeriodicOrbit | None = None) -> PeriodicOrbit | None:
-    """Return the fold of smallest amplitude, where the downward scan of a family ends.
+    """Return the fold of a family at the smallest amplitude.
 
     Parameters
     ----------
@@ -179,15 +179,15 @@ def fold_of(family: NewtonFamily, near: PeriodicOrbit | None = None) -> Periodic
 
     See Also
     --------
-    fold_along_frequency : The folds at several drive frequencies.
-    Shooting : The family of orbits under any contact law.
+    first_event : What ends a stable orbit first; a torus or a period doubling can come before the fold.
+    orbit_end : The end of the motion itself, when the drive is lowered.
 
     Notes
     -----
     The whole branch reaches from its graze to a speed of 100 times 2 pi f gap, where its amplitude rises.
-    Where contact is soft, at an excess of some 1e-5 and less, it can have several folds.  It can go on
-    below the lowest of them until another touch grazes.  A fold above grazing is therefore looked for on
-    the whole branch.  A fold below grazing is the orbit of smallest amplitude.
+    Where contact is soft, at an excess of some 1e-5 and less, it can have several folds, and go on below
+    them until another touch grazes.  A fold above grazing is therefore looked for on the whole branch.
+    One of the `multipliers` at a fold is 1; one above 1 in size says that stability was lost before.
 
     If the fold is not `admissible`, a second family is tried.  It has as many touches as the collision at the
     fold of the kick description.

@@ -64,7 +64,7 @@ class Settled(Generic[S]):
     Parameters
     ----------
     m : int
-        Smallest period in drive periods; 0 if none was found.
+        Smallest period in drive periods, at most `largest_m`; 0 if the run has not repeated.
     impacts : int
         Impacts in one such period; without a period, impacts in the last block of the run.
     end : State

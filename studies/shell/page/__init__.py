@@ -7,8 +7,8 @@ are docstrings, sentences and verdicts come from its summary, figures, tables an
 its columns.json. A page made from other results says other things, and what is the letter's stands on the
 page of the letter's spring only.
 
-``words`` writes numbers, cells and prose as print; ``page.html.j2`` is the template.  The site has the page as
-one of its chapters (``docs/conf.py``).
+``words`` writes numbers, cells and prose as print; ``page.html.j2`` is the template.  The page is a chapter
+of the site (``docs/conf.py``).
 
 The page is one file that needs no network: pictures and style are inside, and its content policy forbids
 every request. What is missing or broken in the results becomes a sentence on the page.
