@@ -22,7 +22,10 @@ from studies.shell.programs import COMMAND
 def report(given: Namespace) -> tuple[str, Mapping[str, object]]:
     """Write the page."""
     path, found, missing = write_page(given.out)
-    faults, studies = [fault for stored in found for fault in stored.faults], [stored.study for stored in found]
+    faults, studies = (
+        [fault for stored in found for fault in stored.faults],
+        [stored.study for stored in found],
+    )
     answer = {"page": path, "studies": studies, "missing": missing, "faults": faults}
     return "\n".join([*faults, in_words(path, found, missing)]), answer
 
