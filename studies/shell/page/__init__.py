@@ -7,8 +7,8 @@ are docstrings, sentences and verdicts come from its summary, figures, tables an
 its columns.json. A page made from other results says other things, and what is the letter's stands on the
 page of the letter's spring only.
 
-``words`` writes numbers, cells and prose as print; ``page.html.j2`` is the template.  The site has the page as
-one of its chapters (``docs/conf.py``).
+``words`` writes numbers, cells and prose as print; ``page.html.j2`` is the template.  The site has the page
+as one of its chapters (``docs/conf.py``).
 
 The page is one file that needs no network: pictures and style are inside, and its content policy forbids
 every request. What is missing or broken in the results becomes a sentence on the page.
@@ -235,9 +235,8 @@ def write_page(results: Path) -> tuple[Path, list[Stored], list[str]]:
     missing = [name for name in studies() if name not in {stored.study for stored in found}]
     letters = any(stored.letters for stored in found)
     points = judged_points(found) if letters else []
-    environment = Environment(
-        loader=FileSystemLoader(Path(__file__).parent), autoescape=True, trim_blocks=True, lstrip_blocks=True
-    )
+    loader = FileSystemLoader(Path(__file__).parent)
+    environment = Environment(loader=loader, autoescape=True, trim_blocks=True, lstrip_blocks=True)
     first = found[0]
     environment.filters |= {"prose": words.prose, "cell": words.cell}
     titles = [first_line(FOLDER / name / "__init__.py").rstrip(".") for name in CHAPTERS]
