@@ -131,7 +131,7 @@ QUANTITIES: Mapping[str, tuple[least_model.AnswerOf, least_model.Distance, str, 
     "delay": (_delays, largest_error, "v/a", 2e-2),
     "kick": (*_SHARED["kick"], "1", 1e-2),
     "born_period": (_born_periods, lambda a, b: float(np.count_nonzero(a != b)), "differing periods", 0.0),
-    "fold": (partial(least_model.fold_of_born, fold_excess), _SHARED["fold"][1], "relative", 2e-2),
+    "fold": (partial(least_model.fold_of_born, fold_excess), least_model.error_of_fold, "relative", 2e-2),
     "tip_trace": (*_SHARED["tip_trace"], "gap", 1e-2),
 }
 """Name -> answer, distance of two answers, its unit, usual tolerance."""
