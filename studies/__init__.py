@@ -38,12 +38,6 @@ ROOT = Path(__file__).resolve().parent.parent
 """The folder in which `beam`, `contact` and `studies` lie side by side."""
 
 
-def single_blas_thread() -> None:
-    """One thread for linear algebra, here and in the processes started from here."""
-    for variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
-        os.environ.setdefault(variable, "1")
-
-
 def refuse_foreign_packages(root: Path = ROOT) -> None:
     """ImportError unless `beam` and `contact` would be imported from the folder `root`."""
     for name in ("beam", "contact"):
@@ -66,7 +60,8 @@ def start_as_program() -> None:
     """Prepare this process for a program: threads, check of the packages, Ctrl-C during the imports."""
     global program
     program = True
-    single_blas_thread()
+    for variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
+        os.environ.setdefault(variable, "1")  # here and in the processes started from here
     if sys.stderr is None:  # started with 2>&-: no file of results may get its number
         os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
         sys.stderr = open(2, "w", encoding="utf-8", closefd=False)

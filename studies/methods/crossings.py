@@ -43,12 +43,11 @@ class Crossing:
         """All modes of the model, without their damping; those above the first make up the part `ringing` of
         the peak [1]."""
         n, period = model.omega.size, 2.0 * math.pi / float(model.omega[0])
-        lead, spread, tail = (0.6, 0.25, 0.4) if n == 1 else (0.05, 0.02, 0.02)
+        parts = (0.6, 0.25, 0.4) if n == 1 else (0.05, 0.02, 0.02)
+        lead, spread, tail = (part * period for part in parts)
         height = np.ones(1) if n == 1 else np.array([1.0 - ringing, *[ringing / (n - 1)] * (n - 1)])
         free = ImpactOscillator(model=replace(model, decay_rate=0.0 * model.decay_rate), stop=stop)
-        return Crossing(
-            oscillator=free, height=height, lead=lead * period, spread=spread * period, tail=tail * period
-        )
+        return Crossing(oscillator=free, height=height, lead=lead, spread=spread, tail=tail)
 
     @property
     def rate(self) -> float:

@@ -27,7 +27,6 @@ key that is a number. The value found carries the provenance "calibrated".
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
@@ -35,10 +34,10 @@ from functools import partial
 import numpy as np
 from scipy.optimize import brentq
 
-from beam import SuspiciousValue
 from contact import Collision, first_collision
 from studies import letter
 from studies.physics.least_model import middle_of
+from studies.physics.parameters import through_any_value
 from studies.shell.scene import Scene, SceneError, beam_at, damping_of, free_period, modes_of, spring_of
 from studies.shell.scene.key import CALIBRATED
 from studies.shell.scene.spring import DAMPING
@@ -94,8 +93,7 @@ def solve_for(
         return scene.replace({key: value}, provenance=CALIBRATED)
 
     def excess(value: float) -> float:
-        with warnings.catch_warnings():  # nobody gave the values that a search tries
-            warnings.simplefilter("ignore", SuspiciousValue)
+        with through_any_value():
             return min(quantity(changed(value)) / target - 1.0, BEYOND)
 
     at_low, at_high = excess(low), excess(high)
@@ -244,11 +242,6 @@ def calibrate_all(scene: Scene, targets: Targets) -> Scene:
     return others(fitted)
 
 
-def leaf_mass(scene: Scene) -> float:
-    """Mass of sheet and tape, without ball and mount [kg]."""
-    return spring_of(scene).strip_mass
-
-
 def with_mass_ratio(scene: Scene, ratio: float, frequency: float) -> Scene:
     """The scene with M = `ratio` times the leaf, its period kept, and grazing at 2 mm at `frequency` [Hz].
 
@@ -263,7 +256,7 @@ def with_mass_ratio(scene: Scene, ratio: float, frequency: float) -> Scene:
     scene = scene.replace({"contact.law": "hertz"})
 
     def weighted(trial: Scene) -> Scene:
-        return trial.replace({"tip.mass_kg": ratio * leaf_mass(trial)}, provenance=CALIBRATED)
+        return trial.replace({"tip.mass_kg": ratio * spring_of(trial).strip_mass}, provenance=CALIBRATED)
 
     period = scene.single_mode.free_period_s
     fitted = calibrate_thickness(scene, period, lambda trial: free_period(weighted(trial)))

@@ -65,9 +65,7 @@ Values = NDArray[np.float64]
 Answer = Values | None
 At = Callable[[float], ImpactOscillator]  # the oscillator of a model at a drive frequency [Hz]
 Distance = Callable[[Values, Values], float]
-AnswerOf = Callable[
-    ..., Answer
-]  # the answer of a model at a drive frequency [Hz] and, if given, an excess [1]
+AnswerOf = Callable[..., Answer]  # of a model at a drive frequency [Hz] and, if given, an excess [1]
 Fold = Callable[[StroboscopicMap, int], float | None]
 Off = Callable[[int], float]
 Choice = TypeVar("Choice", bound=Hashable)
@@ -176,13 +174,13 @@ def largest_error(answer: Values, reference: Values) -> float:
     return float(np.max(np.abs(answer - reference)))
 
 
+def relative_error(answer: Values, reference: Values) -> float:
+    """The largest difference over the reference."""
+    return largest_error(answer / reference, reference / reference)
+
+
 QUANTITIES: Mapping[str, tuple[AnswerOf, Distance, bool, bool]] = {
-    "response": (
-        lambda at, f, _=0.0: np.array([at(f).grazing_amplitude()]),
-        lambda answer, reference: largest_error(answer / reference, reference / reference),
-        False,
-        False,
-    ),
+    "response": (lambda at, f, _=0.0: np.array([at(f).grazing_amplitude()]), relative_error, False, False),
     "kick": (partial(collisions, "kick"), largest_error, False, False),
     "restitution": (partial(collisions, "restitution"), largest_error, False, False),
     "fold": (partial(fold_of_born, kick_fold), error_of_fold, True, True),

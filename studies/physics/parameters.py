@@ -11,7 +11,8 @@ frequency, amplitude            of the base motion; with one mode Z is that of E
 
 import math
 import warnings
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from numbers import Real
@@ -123,17 +124,16 @@ def require_names(
         raise InvalidValue(f"{option} names {', '.join(names) or 'nothing'}; it must name each one once")
 
 
+@contextmanager
+def through_any_value() -> Iterator[None]:
+    """No warnings of suspicious values, as a search may pass through any."""
+    with warnings.catch_warnings(action="ignore", category=SuspiciousValue):
+        yield
+
+
+@through_any_value()
 def with_values(oscillator: ImpactOscillator, values: Mapping[str, float]) -> ImpactOscillator:
-    """The oscillator with other values of some parameters; ValueError where one is out of range.
-
-    A search may pass through any values: none is suspicious here.
-    """
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", SuspiciousValue)
-        return _with_values(oscillator, values)
-
-
-def _with_values(oscillator: ImpactOscillator, values: Mapping[str, float]) -> ImpactOscillator:
+    """The oscillator with other values of some parameters; ValueError where one is out of range."""
     model, stop, drive, law = oscillator.model, oscillator.stop, oscillator.driven, oscillator.stop.law
     if "tip_mass" in values:
         model = with_tip_mass(model, values["tip_mass"])

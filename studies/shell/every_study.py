@@ -70,7 +70,7 @@ def run_in_turn(
     it has and ends.
     """
     codes, took = dict[str, int](), dict[str, float]()
-    running, stopped, known = list[subprocess.Popen[str]](), False, run_times()
+    running, stopped, known = list[subprocess.Popen[bytes]](), False, run_times()
 
     def signalled(number: int, frame: types.FrameType | None) -> None:
         nonlocal stopped
@@ -90,9 +90,7 @@ def run_in_turn(
             label, begun = f"{programs.COMMAND} {name}", time.monotonic()
             command, quiet = [sys.executable, "-m", "studies", name, *arguments], subprocess.DEVNULL
             with tempfile.TemporaryFile("w+", encoding="utf-8", errors="replace") as log:
-                child = subprocess.Popen(
-                    command, stdin=quiet, stdout=log, stderr=log, text=True, process_group=0
-                )
+                child = subprocess.Popen(command, stdin=quiet, stdout=log, stderr=log, process_group=0)
                 running[:] = [child]
                 codes[name] = child.wait()
                 tick(expected[name])  # however long it took

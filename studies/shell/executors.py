@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
 from contextlib import contextmanager
 from datetime import timedelta
+from functools import partial
 
 from beam import InvalidValue
 from studies.shell.programs import needs
@@ -95,7 +96,9 @@ def pool_of(place: str, workers: int) -> Iterator[Executor]:
         return
     if kind == "processes":
         context = multiprocessing.get_context("spawn")
-        executor: Executor = ProcessPoolExecutor(workers, mp_context=context, initializer=_quiet)
+        silence = partial(warnings.filterwarnings, "ignore", "", UserWarning, r"(beam|contact|studies)\b")
+        # a worker is silent, as its parent has printed the warnings
+        executor: Executor = ProcessPoolExecutor(workers, mp_context=context, initializer=silence)
     else:
         executor = ThreadPoolExecutor(workers, thread_name_prefix="study")
     try:
@@ -106,11 +109,6 @@ def pool_of(place: str, workers: int) -> Iterator[Executor]:
         executor.shutdown(wait=kind == "processes", cancel_futures=True)
         raise
     executor.shutdown()
-
-
-def _quiet() -> None:
-    """Silence the warnings in a worker process, as its parent has printed them."""
-    warnings.filterwarnings("ignore", category=UserWarning, module=r"(beam|contact|studies)\b")
 
 
 @contextmanager

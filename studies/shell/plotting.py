@@ -20,7 +20,7 @@ reads. The same data give the same bytes: neither format carries a date or a ver
 from __future__ import annotations
 
 import io
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import AbstractContextManager
 from functools import wraps
 from pathlib import Path
@@ -189,12 +189,16 @@ def panel(axes: Axes, number: int, words: str) -> None:
     axes.set_title(f"({chr(ord('a') + number)}) {words}", loc="left")
 
 
-def legend_below(figure: Figure, axes: Iterable[Axes], columns: int, **looks: Any) -> None:
-    """One legend below all panels, each name once."""
+def legend_below(
+    figure: Figure, axes: Iterable[Axes], columns: int, *, order: Sequence[str] = (), **looks: Any
+) -> None:
+    """One legend below all panels, each name once; names in `order` come first."""
     named: dict[str, Any] = {}
     for axis in axes:
         named |= dict(zip(*axis.get_legend_handles_labels()[::-1], strict=True))
-    figure.legend(named.values(), named.keys(), loc="outside lower center", ncols=columns, **looks)
+    names = sorted(named, key=lambda name: (*order, name).index(name))
+    marks = [named[name] for name in names]
+    figure.legend(marks, names, loc="outside lower center", ncols=columns, **looks)
 
 
 def mark_letter(axis: Axis, value: float, *, words: str = "letter", along: float = 0.99) -> None:

@@ -134,8 +134,8 @@ class Study:
     def _compute(self, run: Run, options: Mapping[str, object]) -> tuple[int, str, Mapping[str, object]]:
         """Exit code, status and results of the run."""
         try:
-            with warnings.catch_warnings():  # a study varies the scene on purpose
-                warnings.simplefilter("ignore", SuspiciousValue)
+            # a study varies the scene on purpose
+            with warnings.catch_warnings(action="ignore", category=SuspiciousValue):
                 conditions = self.at(run.scene, options) if self.at else ()
                 if self.needs:
                     alone = replace(run.scene, stops=())  # modes are chosen with the plate of [stop] alone

@@ -106,7 +106,7 @@ def largest_of(solved: Modes) -> float:
 
 def write_shapes(scene: Scene, run: Run, solved: Modes, mode: int, frames: int) -> None:
     """Arrays, meshes and the figure."""
-    from studies.shell.plotting import in_house_style  # matplotlib is slow to import
+    from studies.shell.plotting import house_style, new_figure  # matplotlib is slow to import
 
     along, radius, largest = solved.displacement_along(2), scene.tip.ball_radius_m, largest_of(solved)
     run.arrays(
@@ -128,18 +128,13 @@ def write_shapes(scene: Scene, run: Run, solved: Modes, mode: int, frames: int) 
     write_mode_motion(motion, solved, mode, frames=frames, largest=largest, ball_radius=radius)
     run.path("motion_frames", "Frames of motion.pvd: points of the spring [m].")
     words = f"The rig at rest, in true scale: {spring_in_words(scene)}, {size_in_words(scene)}."
-    run.figure("rig", in_house_style(draw_at_rest)(scene, solved), words)
+    with house_style():
+        figure, axes = new_figure(height=0.055)
+        draw_rig(axes, scene, solved, [np.zeros(int(np.sum(solved.coupled)))])
+        shapes = draw(solved)
+    run.figure("rig", figure, words)
     caption = "Shapes of the lowest modes in the plane of the strip, enlarged to one largest displacement."
-    run.figure("modes", in_house_style(draw)(solved), caption)
-
-
-def draw_at_rest(scene: Scene, solved: Modes) -> Figure:
-    """The spring at rest with ball, plate and base."""
-    from studies.shell.plotting import new_figure  # matplotlib is slow to import
-
-    figure, axes = new_figure(height=0.055)
-    draw_rig(axes, scene, solved, [np.zeros(int(np.sum(solved.coupled)))])
-    return figure
+    run.figure("modes", shapes, caption)
 
 
 def write_films(run: Run, solved: Modes, radius: float, count: int, frames: int) -> None:
@@ -195,7 +190,6 @@ def draw(solved: Modes) -> Figure:
     for axis in axes.flat[:count][-columns:]:
         plotting.label(axis.xaxis, "x", "mm")
         axis.tick_params(labelbottom=True)
-    plotting.legend_below(
-        figure, axes.flat[:count], 2, title=f"largest displacement drawn as {largest:.1f} mm"
-    )
+    title = f"largest displacement drawn as {largest:.1f} mm"
+    plotting.legend_below(figure, axes.flat[:count], 2, title=title)
     return figure

@@ -158,10 +158,8 @@ def judge(
 ) -> None:
     """The three points of the letter; `outcomes` begin with Eq. (1) and the calibrated beam."""
     single, beam = outcomes[:2]
-    said = (
-        f"map {word(map_period)}, Eq. (1) {word(single.born_period)}, "
-        f"beam {word(beam.born_period)} as calibrated"
-    )
+    born = [word(one.born_period) for one in (single, beam)]
+    said = f"map {word(map_period)}, Eq. (1) {born[0]}, beam {born[1]} as calibrated"
     note = "no cell of the search has it"
     if found is not None:
         said += f", {word(found.born_period)} in the search"

@@ -13,12 +13,12 @@ from typing import Annotated
 import numpy as np
 
 from beam import ModalModel
-from contact import HarmonicDrive, ImpactOscillator, Stop, StroboscopicMap
+from contact import StroboscopicMap
 from contact.orbits import Shooting, fold_excess, onset_m, onset_orbit, orbit_diagram
 from studies import letter
 from studies.physics.calibration import calibrate, calibrate_thickness
 from studies.physics.descriptions import Diagram, fold_orbit, or_none, up_and_down
-from studies.shell.scene import Scene, SceneError, contact_law_of, harmonic, model_of, single_mode_of
+from studies.shell.scene import Scene, SceneError, beam_at, harmonic, model_of, single_mode_of, spring_of
 
 FREQUENCY_HZ, FREE_PERIOD_S = letter.BREAKDOWN["frequency_hz"], letter.BREAKDOWN["free_period_s"]
 DECAY_RATE_PER_S, BORN_PERIOD = letter.BREAKDOWN["decay_rate_per_s"], letter.BREAKDOWN["born_period"]
@@ -40,17 +40,14 @@ LAST = 0.05  # impacts may go on below p3 for this part of its excess and still 
 
 def fig_5(scene: Scene) -> Scene:
     """The scene with period and damping of Fig. 5; ball and gap as they were."""
-    if harmonic(scene).spring.kind == "modal_data":
-        raise SceneError("spring.kind is modal_data; the thickness of the spring of Fig. 5 must be fitted")
+    spring_of(harmonic(scene))  # refuses measured modes: a thickness is fitted
     if not abs(scene.single_mode.free_period_s / FREE_PERIOD_S - 1.0) <= NEAR:
         raise SceneError(
             f"single_mode.free_period_s is {scene.single_mode.free_period_s:g} s; to be fitted to the spring "
             f"of Fig. 5 it must be within {100 * NEAR:g} % of {FREE_PERIOD_S:g} s"
         )
-    fitted = calibrate(scene, free_period_s=FREE_PERIOD_S, decay_rate_per_s=DECAY_RATE_PER_S)
-    return fitted.replace(
-        {"single_mode.free_period_s": FREE_PERIOD_S, "single_mode.decay_rate_per_s": DECAY_RATE_PER_S}
-    )
+    own = {"single_mode.free_period_s": FREE_PERIOD_S, "single_mode.decay_rate_per_s": DECAY_RATE_PER_S}
+    return calibrate(scene, free_period_s=FREE_PERIOD_S, decay_rate_per_s=DECAY_RATE_PER_S).replace(own)
 
 
 def tuned(scene: Scene, mass: float) -> ModalModel:
@@ -74,13 +71,8 @@ class Spring:
         """Driven as in Fig. 5."""
         rates = np.array(self.model.decay_rate)
         rates[1:] *= self.higher_damping
-        return StroboscopicMap(
-            oscillator=ImpactOscillator(
-                model=replace(self.model, decay_rate=rates),
-                drive=HarmonicDrive(frequency=FREQUENCY_HZ),
-                stop=Stop(gap=self.scene.stop.gap_m, law=contact_law_of(self.scene)),
-            )
-        )
+        model = replace(self.model, decay_rate=rates)
+        return StroboscopicMap(oscillator=beam_at(self.scene, FREQUENCY_HZ, model))
 
 
 def single_mode(scene: Scene, restitution: float) -> Spring:

@@ -89,9 +89,8 @@ def draw(
         plotting.label(axis.yaxis, plotting.EXCESS)
     hit = (cells["impacts"] > 0) & (cells["m"] > 0)
     seen = set(np.minimum(cells["m"][hit], len(PERIODS) - 1).tolist())
-    texts = {m: f"p$_{{{m}}}$" for m in range(len(PERIODS) - 1)} | {
-        len(PERIODS) - 1: f"{len(PERIODS) - 1} to 64"
-    }
+    last = len(PERIODS) - 1
+    texts = {m: f"p$_{{{m}}}$" for m in range(last)} | {last: f"{last} to 64"}
     failed = bool(np.any(cells["m"] < 0))
     _key(axes[0, 1], "period m", {texts[m]: PERIODS[m] for m in sorted(seen)}, failed)
     seen = set(np.searchsorted(list(CLASSES), cells["impacts"][hit], side="right").tolist())
@@ -132,9 +131,7 @@ def _draw_theory(axis: Axes, edges: Sequence[Band], folds: Sequence[Fold]) -> No
         places = [getattr(band, name) for band in edges if band.m <= MARKED]
         look: plotting.Style = {"color": "black", "markeredgecolor": "white", "linestyle": "none"}
         height = np.full(len(places), sheared(place))
-        axis.plot(
-            places, height, marker=marker, markersize=4, **look, label=f"{name} band edge, map (m ≤ {MARKED})"
-        )
+        axis.plot(places, height, marker, markersize=4, **look, label=f"{name} band edge, map (m ≤ {MARKED})")
     for period in sorted({fold.m for fold in folds}):
         curve = [fold for fold in folds if fold.m == period]
         f, excess = [fold.frequency_hz for fold in curve], sheared([fold.excess for fold in curve])

@@ -17,7 +17,7 @@ them (certified).
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +26,7 @@ from beam import InvalidValue
 from contact import Band, ImpactOscillator
 from contact.orbits import AmplitudeScan, PeriodicOrbit, Shooting, fold_along_frequency
 from studies.physics.descriptions import fold_orbit
+from studies.physics.parameters import with_values
 from studies.shell.options import MOST_CELLS
 from studies.shell.scene import Scene, band_of
 from studies.shell.sweep import Column
@@ -116,16 +117,12 @@ def folds_of_single_mode(oscillator: ImpactOscillator, frequencies: np.ndarray, 
     """The folds of Eq. (1) at `frequencies` [Hz] above the excess `lowest`."""
     found = []
     for frequency in frequencies.tolist():
-        here = _driven(oscillator, frequency)
+        here = with_values(oscillator, {"frequency": frequency})
         for period in range(2, LARGEST + 1):
             fold = fold_orbit(here, period)
             if fold is not None and fold.excess > lowest and fold.admissible:
                 found.append(Fold(m=period, frequency_hz=frequency, excess=fold.excess))
     return found
-
-
-def _driven(oscillator: ImpactOscillator, frequency: float) -> ImpactOscillator:
-    return replace(oscillator, drive=replace(oscillator.driven, frequency=frequency))
 
 
 def folds_of_beam(
@@ -145,7 +142,8 @@ def folds_of_beam(
         if inside.size < FEWEST:
             inside = np.union1d(inside, np.linspace(low, high, FEWEST))
         middle = inside.size // 2
-        family = Shooting(oscillator=_driven(oscillator, float(inside[middle])), m=band.m)
+        there = with_values(oscillator, {"frequency": float(inside[middle])})
+        family = Shooting(oscillator=there, m=band.m)
         for way in (inside[middle::-1], inside[middle + 1 :]):
             for frequency, fold in zip(way.tolist(), fold_along_frequency(family, way), strict=True):
                 if isinstance(fold, PeriodicOrbit) and fold.admissible and fold.excess > lowest:

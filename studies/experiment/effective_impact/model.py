@@ -38,7 +38,7 @@ from contact import (
 )
 from contact.orbits import onset_orbit
 from studies.letter import TIME_TRACE_EXCESS, TIME_TRACE_HZ
-from studies.physics.calibration import calibrate_gap, leaf_mass, with_mass_ratio
+from studies.physics.calibration import calibrate_gap, with_mass_ratio
 from studies.shell.scene import (
     Scene,
     approach_speed,
@@ -47,6 +47,7 @@ from studies.shell.scene import (
     hertz_of,
     model_of,
     own_frequency,
+    spring_of,
 )
 
 OWN, HERTZ = "contact of the scene", "Hertz"
@@ -156,7 +157,7 @@ class Spring:
     @property
     def mass_ratio(self) -> float:
         """Tip mass over that of the leaf [1]."""
-        return self.scene.tip.mass_kg / leaf_mass(self.scene)
+        return self.scene.tip.mass_kg / spring_of(self.scene).strip_mass
 
     def lossy(self, restitution: float) -> HuntCrossley:
         """Hunt and Crossley's law that has this restitution with a free mass at the excess of Fig. 4."""

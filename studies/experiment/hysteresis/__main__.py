@@ -175,15 +175,11 @@ def judge(
     size, most = written(off["map"].median, 3), max(factors, key=lambda name: abs(math.log(factors[name])))
     run.finding(f"The map's hysteresis differs from the beam's by a factor of {size} in the median.")
     if abs(math.log(factors[most])) > math.log(NEARLY):
-        words = (
-            f"Its causes partly cancel; the largest, {most.replace('_', ' ')}, multiplies the hysteresis by"
-        )
-        run.finding(f"{words} {written(factors[most], 3)}.")
+        words = f"Its causes partly cancel; the largest, {most.replace('_', ' ')}, multiplies"
+        run.finding(f"{words} the hysteresis by {written(factors[most], 3)}.")
     if higher:
-        words = (
-            "Restitution and time delay instead of the higher modes give the beam's hysteresis to a factor of"
-        )
-        run.finding(f"{words} {written(two.median, 3)} in the median.")
+        words = "Restitution and time delay instead of the higher modes give the beam's hysteresis"
+        run.finding(f"{words} to a factor of {written(two.median, 3)} in the median.")
     run.verdict(
         "hysteresis",
         "in part" if max(own, 1.0 / own) > NEARLY else "agrees",

@@ -31,7 +31,7 @@ from studies.letter import AMPLITUDE_STABILITY, TRANSITION_HZ
 from studies.physics.descriptions import strobed_at
 from studies.physics.drive_noise import DRIFTS, SMALL, TIMES, DriveNoise
 from studies.shell.digits import written
-from studies.shell.scene import Scene, SceneError, harmonic, model_of, single_mode_at
+from studies.shell.scene import Scene, harmonic, model_of, single_mode_at, spring_of
 from studies.shell.study import Run, study
 
 HIGHEST = max(TRANSITION_HZ)  # m of the last transition that the letter saw
@@ -48,17 +48,13 @@ def last_period(
     correlation_times: Annotated[tuple[float, ...], "of its drift (s), 0 for white", TIMES] = DRIFTS,
 ) -> Mapping[str, object]:
     """Compute, store and draw."""
-    if harmonic(scene).spring.kind == "modal_data":
-        raise SceneError("spring.kind is modal_data; this study varies the dimensions of a spring")
+    spring_of(harmonic(scene))  # refuses measured modes: dimensions are varied
     times = dict.fromkeys(correlation_times)
     noises = [DriveNoise(stability=stability, correlation_s=time) for time in times]
     model, frequencies = model_of(scene), sorted(scene.drive.frequencies_hz)
 
-    base = [
-        row
-        for rows in run.map(partial(transitions_at, scene, model), frequencies, "frequencies")
-        for row in rows
-    ]
+    before = run.map(partial(transitions_at, scene, model), frequencies, "frequencies")
+    base = [row for rows in before for row in rows]
     after = run.attempt(partial(transitions_after, scene, base), changes_of(scene, run.quick), "changes")
     rows = base + [row for found in after for row in found or ()]
     run.table(

@@ -37,9 +37,7 @@ def draw_kicks(rows: Sequence[Kick], letters: bool) -> Figure:
         plotting.panel(axis, number, CASES[case])
         plotting.label(axis.xaxis, EXCESS)
         if curve:
-            axis.loglog(
-                excess, hard, color="0.45", linewidth=1.2, linestyle=":", label="hard wall, power 1/2"
-            )
+            axis.loglog(excess, hard, ":", color="0.45", linewidth=1.2, label="hard wall, power 1/2")
     for line, name in (("-", "closed form"), ("--", "law of a soft touch")):
         axes[0].plot([], [], line, color="0.3", linewidth=0.8, label=name)
     axes[0].set_ylim(bottom=0.3 * min((row.kick_velocity for row in rows), default=1e-6))

@@ -108,11 +108,10 @@ def graph_of(trace: Trace, gaps: Sequence[float], duration: float) -> Callable[[
         from studies.shell.plotting import BLUE, GUIDE, NOTE, label  # matplotlib is slow to import
 
         axes.plot(1e3 * trace.time, 1e3 * trace.tip, color=BLUE)
+        across = axes.get_yaxis_transform()
         for gap in gaps:
             axes.axhline(1e3 * gap, **GUIDE)
-            axes.text(
-                1.0, 1e3 * gap, "plate", transform=axes.get_yaxis_transform(), fontsize=NOTE, va="center"
-            )
+            axes.text(1.0, 1e3 * gap, "plate", transform=across, fontsize=NOTE, va="center")
         axes.set_xlim(0.0, 1e3 * duration)
         label(axes.xaxis, "time", "ms")
         label(axes.yaxis, "ball", "mm")

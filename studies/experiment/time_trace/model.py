@@ -191,10 +191,9 @@ def contact_force(oscillator: ImpactOscillator, run: Trajectory) -> Array:
         return np.full(depth.shape, np.nan)
     if isinstance(law, LinearContact):
         force = law.stiffness * depth + law.damping * oscillator.tip(run.velocity)
-    elif isinstance(law, HertzContact):
-        force = law.stiffness * depth**1.5
-    elif isinstance(law, HuntCrossley):
-        force = law.stiffness * depth**1.5 * (1.0 + law.dissipation * oscillator.tip(run.velocity))
+    elif isinstance(law, HertzContact | HuntCrossley):
+        dissipation = getattr(law, "dissipation", 0.0)
+        force = law.stiffness * depth**1.5 * (1.0 + dissipation * oscillator.tip(run.velocity))
     elif isinstance(law, PowerContact):
         lever = depth ** (0.5 * law.exponent - 0.5)
         force = lever * (law.stiffness * lever * depth + law.damping * oscillator.tip(run.velocity))

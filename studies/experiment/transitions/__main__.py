@@ -55,9 +55,8 @@ def transitions(
     with run.pool() as pool:
         for at in pool.map(partial(rows_at, scene, model=model), sorted(scene.drive.frequencies_hz)):
             found.append(at)
-            run.say(
-                f"{at.rows[0].frequency_hz:.2f} Hz: letter {word(at.rows[0].letter)}; {in_words(at.rows)}"
-            )
+            first = at.rows[0]
+            run.say(f"{first.frequency_hz:.2f} Hz: letter {word(first.letter)}; {in_words(at.rows)}")
             for where, reason in at.failures:
                 run.failed(where, reason)
     rows = [row for at in found for row in at.rows]
@@ -128,11 +127,8 @@ def judge(run: Run, rows: Sequence[Transition]) -> bool:
     same, first = [row.m == row.letter for row in rows], rows[0]
     above = {row.description: row.born.get("0.01") for row in rows}
     note = "" if all(same) else f"at excess 0.01: {words(above)}"
-    if (
-        note
-        and first.frequency_hz == TRANSITION_HZ[10]
-        and run.scene.single_mode.free_period_s == FREE_PERIOD_S
-    ):
+    own = run.scene.single_mode.free_period_s == FREE_PERIOD_S
+    if note and own and first.frequency_hz == TRANSITION_HZ[10]:
         note += f"; {AT_THE_EDGE}"
     verdict: Verdict = "agrees" if all(same) else "in part" if any(same) else "differs"
     run.verdict(f"p{first.letter}", verdict, found=in_words(rows), note=note)

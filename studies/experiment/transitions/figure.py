@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -48,12 +47,7 @@ def draw(
             plotting.label(axis.xaxis, *sideways)
         for axis in axes[:, 0]:
             plotting.label(axis.yaxis, *upwards)
-        named = dict[str, Any]()
-        for axis in axes.flat:
-            named |= dict(zip(*axis.get_legend_handles_labels()[::-1], strict=True))
-        texts = sorted(named, key=lambda text: (*ORDER, text).index(text))
-        place: plotting.Style = {"loc": "outside lower center", "ncols": 3, "markerscale": 1.5}
-        figure.legend([named[text] for text in texts], texts, **place)
+        plotting.legend_below(figure, axes.flat, 3, order=ORDER, markerscale=1.5)
     return figure
 
 

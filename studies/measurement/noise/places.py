@@ -51,10 +51,8 @@ class Place:
 
     def stable(self, excess: float) -> Any:
         """A strobe of the stable p_m at `excess`, or None."""
-        for orbit in self.family.orbits(excess):
-            if orbit.stable and orbit.admissible:
-                return orbit.strobe_state()
-        return None
+        orbits = (one for one in self.family.orbits(excess) if one.stable and one.admissible)
+        return next((one.strobe_state() for one in orbits), None)
 
     @cached_property
     def steepness(self) -> float:

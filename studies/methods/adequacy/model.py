@@ -29,26 +29,13 @@ from contact import ImpactOscillator, StroboscopicMap
 from contact.orbits import fold_excess, onset_m
 from studies import letter
 from studies.physics import least_model
-from studies.physics.least_model import (
-    COLLISIONS,
-    LADDER,
-    REFERENCE,
-    Answer,
-    AnswerOf,
-    At,
-    Distance,
-    collisions,
-    distances,
-    error_of_fold,
-    fold_of_born,
-    largest_error,
-)
+from studies.physics.least_model import REFERENCE, Answer, At, largest_error
 from studies.shell.scene import Scene, approach_speed, beam_at, damping_of, model_of, modes_of, single_mode_at
 
 IN_WORDS = {"newton": "Newton", "linear": "linear", "hertz": "Hertz", "hunt_crossley": "Hunt and Crossley"}
 IN_WORDS["tsuji"] = "Tsuji"
 LAWS = tuple(IN_WORDS)
-MODES = (*LADDER, REFERENCE)
+MODES = (*least_model.LADDER, REFERENCE)
 MESHES = (2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96)  # elements on a leg
 
 BEND_SHARE = 0.8  # elements on the bend for each one on a leg: the proportion of the default mesh
@@ -126,8 +113,8 @@ MESH_ORDER = 4  # of frequencies and shapes, with cubic Hermite elements
 
 
 def _delays(at: At, frequency: float) -> Answer:
-    found, gap = collisions("delay", at, frequency), at(frequency).stop.gap
-    speeds = np.array([approach_speed(frequency, gap, excess) for excess in COLLISIONS])
+    found, gap = least_model.collisions("delay", at, frequency), at(frequency).stop.gap
+    speeds = np.array([approach_speed(frequency, gap, excess) for excess in least_model.COLLISIONS])
     return None if found is None else found * (2.0 * math.pi * frequency) ** 2 * gap / speeds
 
 
@@ -138,18 +125,13 @@ def _born_periods(at: At, frequency: float) -> Answer:
 
 
 _SHARED = {name: found[:2] for name, found in least_model.QUANTITIES.items()}
-QUANTITIES: Mapping[str, tuple[AnswerOf, Distance, str, float]] = {
-    "frequency": (
-        lambda at, f: at(f).model.frequencies_hz,
-        lambda a, b: largest_error(a / b, b / b),
-        "relative",
-        1e-3,
-    ),
+QUANTITIES: Mapping[str, tuple[least_model.AnswerOf, least_model.Distance, str, float]] = {
+    "frequency": (lambda at, f: at(f).model.frequencies_hz, least_model.relative_error, "relative", 1e-3),
     "restitution": (*_SHARED["restitution"], "1", 1e-2),
     "delay": (_delays, largest_error, "v/a", 2e-2),
     "kick": (*_SHARED["kick"], "1", 1e-2),
     "born_period": (_born_periods, lambda a, b: float(np.count_nonzero(a != b)), "differing periods", 0.0),
-    "fold": (partial(fold_of_born, fold_excess), error_of_fold, "relative", 2e-2),
+    "fold": (partial(least_model.fold_of_born, fold_excess), least_model.error_of_fold, "relative", 2e-2),
     "tip_trace": (*_SHARED["tip_trace"], "gap", 1e-2),
 }
 """Name -> answer, distance of two answers, its unit, usual tolerance."""
@@ -189,7 +171,7 @@ class Search:
                 return found
             return found[int(number) - 1 : int(number)] if int(number) <= choice.modes else None
 
-        self.between = distances(answer, distance)
+        self.between = least_model.distances(answer, distance)
 
     def off(self, choice: Choice) -> float:
         """Distance of a model's answer from the reference's; infinite without an answer."""

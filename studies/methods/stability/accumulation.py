@@ -74,13 +74,11 @@ def event_loop(restitution: float, tolerance: float) -> tuple[str, np.ndarray]:
 def measure(scene: Scene, quick: bool) -> Findings:
     """Times of rest of the package, and how far the loop gets; nothing depends on the scene."""
     limits = list[Limit]()
+    rest = partial(entry, method="event-driven", parameter="time of rest", unit="s")
     for e in [0.3, 0.7, 0.9] if quick else [0.1, 0.3, 0.5, 0.7, 0.9, 0.99, 0.999]:
         at, count = time_of_rest(e)
         case, theory = f"bouncing ball, e = {e:g}, rests after {count} impacts", rest_time(e)
-        rests = entry(
-            method="event-driven", case=case, parameter="time of rest", unit="s", theory=theory, measured=at
-        )
-        limits.append(rests)
+        limits.append(rest(case=case, theory=theory, measured=at))
     row = partial(entry, method="scipy RK45, restarted at events", parameter="number of the last event")
     for e in (0.7,) if quick else (0.5, 0.7, 0.9):
         for tolerance in TOLERANCES:

@@ -10,6 +10,7 @@ with which mode 1 errs by less than 1e-8 past a collision.
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import pairwise
 from statistics import median
 from typing import Annotated
@@ -85,12 +86,10 @@ def rows_of(case: str, oscillator: ImpactOscillator, *, quick: bool) -> list[Cos
     strobed = StroboscopicMap(oscillator=driven)
     free, state = strobed.at(BELOW), strobed.orbit(strobed.steady(), SETTLING).end
     still, impacts = free.steady(), strobed.orbit(state, count).impacts.sum() / count
-    here: tuple[Orbit, int] = (lambda periods: strobed.orbit(state, periods), count)
-    runs = {(case, OURS): here}
-    if case == SINGLE:
-        runs[case, OURS] = here[0], 10 * count
-    else:
-        runs[FREE, OURS] = (lambda periods: free.orbit(still, periods), count)
+    runs = dict[tuple[str, str], tuple[Orbit, int]]()
+    runs[case, OURS] = partial(strobed.orbit, state), 10 * count if case == SINGLE else count
+    if case != SINGLE:
+        runs[FREE, OURS] = partial(free.orbit, still), count
     if HEYOKA not in missing_solvers():
         peer = OutsideSolver(solver="heyoka Taylor", tolerance=TOLERANCE)
         runs[case, HEYOKA] = (

@@ -5,7 +5,6 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from matplotlib.artist import Artist
 from matplotlib.figure import Figure
 
 from studies.methods.work_precision.methods import EXACT, OUTSIDE, PERIODIC, STEPPED
@@ -44,7 +43,7 @@ def styles_of(rows: Sequence[Measured]) -> dict[str, dict[str, Any]]:
 def draw_errors(rows: Sequence[Measured], references: Sequence[Reference]) -> Figure:
     """Error of mode 1 against time, one panel a problem; the legend is in the order of families."""
     figure, axes = plotting.new_figure(2, 2, width=plotting.PAGE, height=0.185, squeeze=False)
-    styles, drawn = styles_of(rows), dict[str, Artist]()
+    styles = styles_of(rows)
     for number, (reference, axis) in enumerate(zip(references, axes.flat, strict=False)):
         problem = reference.problem
         for name, style in styles.items():
@@ -52,7 +51,7 @@ def draw_errors(rows: Sequence[Measured], references: Sequence[Reference]) -> Fi
             points = [(row.time_per_period_us, row.error) for row in mine if row.error is not None]
             if points:
                 cost, error = np.array(points).T
-                (drawn[name],) = axis.plot(cost, np.maximum(error, FLOOR), label=name, clip_on=False, **style)
+                axis.plot(cost, np.maximum(error, FLOOR), label=name, clip_on=False, **style)
         axis.set_xscale("log")
         axis.set_yscale("log")
         low, high = np.log10(axis.get_xlim())
@@ -62,6 +61,5 @@ def draw_errors(rows: Sequence[Measured], references: Sequence[Reference]) -> Fi
         plotting.label(axis.yaxis, "error of mode 1")
     for axis in axes.flat[len(references) :]:
         axis.set_axis_off()
-    named = {name: drawn[name] for name in styles if name in drawn}
-    figure.legend(named.values(), named.keys(), loc="outside lower center", ncols=4)
+    plotting.legend_below(figure, axes.flat, 4, order=list(styles))
     return figure

@@ -66,12 +66,6 @@ class Sweep:
     settings: list[Setting]
 
 
-def coarsest_step(problem: Problem) -> float:
-    """The first step of a sweep [s]."""
-    fastest = 2.0 / float(np.max(problem.oscillator.model.omega))
-    return min(problem.contact_time, fastest) if problem.contact_time > 0.0 else problem.period / 32.0
-
-
 def sweeps_for(problem: Problem, *, quick: bool = False) -> list[Sweep]:
     """Every method that knows the law of `problem`, over its settings."""
     law, stride, found = problem.oscillator.stop.law.code, 3 if quick else 1, list[Sweep]()
@@ -82,23 +76,16 @@ def sweeps_for(problem: Problem, *, quick: bool = False) -> list[Sweep]:
 
     add("exact method", EXACT, 1.0, [Setting(None, "exact", Exact())])
     finest = FINEST_HARD if problem.contact_time == 0.0 else FINEST
-    steps = (coarsest_step(problem) * 4.0 ** -np.arange(0, finest, stride)).tolist()
+    fastest = 2.0 / float(np.max(problem.oscillator.model.omega))
+    coarsest = min(problem.contact_time, fastest) if problem.contact_time > 0.0 else problem.period / 32.0
+    steps = (coarsest * 4.0 ** -np.arange(0, finest, stride)).tolist()
     for label, made in STEPS.items():
         add(label, STEPPED, 4.0, [Setting(h, f"step {h:.3g} s", made(h), "s") for h in steps])
-    add(
-        SAMPLED,
-        STEPPED,
-        4.0,
-        [Setting(1.0 / n, f"{n} points per period", SampledFlight(points=n)) for n in POINTS[::stride]],
-    )
+    rare = [(n, SampledFlight(points=n)) for n in POINTS[::stride]]
+    add(SAMPLED, STEPPED, 4.0, [Setting(1.0 / n, f"{n} points per period", method) for n, method in rare])
     for label in installed_solvers():
-        add(
-            label.replace("scipy", "SciPy"),
-            OUTSIDE,
-            3.0,
-            [
-                Setting(tol, f"tolerance {tol:.0e}", OutsideSolver(solver=label, tolerance=tol))
-                for tol in (TOLERANCES[1::3] if quick else TOLERANCES)
-            ],
-        )
+        tolerances = TOLERANCES[1::3] if quick else TOLERANCES
+        peers = [(tol, OutsideSolver(solver=label, tolerance=tol)) for tol in tolerances]
+        settings = [Setting(tol, f"tolerance {tol:.0e}", peer) for tol, peer in peers]
+        add(label.replace("scipy", "SciPy"), OUTSIDE, 3.0, settings)
     return found

@@ -12,7 +12,6 @@ The reference has settled and errs by what does not close.
 """
 
 import math
-import statistics
 import time
 from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -113,25 +112,17 @@ class Reference:
 
 def reference_of(problem: Problem) -> Reference:
     """The reference of a problem, from the runs of both precisions."""
-    one, other = (
-        extended_motion(problem.oscillator, problem.start, problem.probe, digits) for digits in DIGITS
-    )
-    found = Reference(
-        problem=problem, displacement=one.displacement[0], velocity=one.velocity[0], own_error=0.0
-    )
-    return replace(found, own_error=found.error_of(other.displacement[0], other.velocity[0]))
+    motion = partial(extended_motion, problem.oscillator, problem.start, problem.probe)
+    (q, v), other = ((run.displacement[0], run.velocity[0]) for run in map(motion, DIGITS))
+    found = Reference(problem=problem, displacement=q, velocity=v, own_error=0.0)
+    return replace(found, own_error=found.error_of(*other))
 
 
 def error_of(reference: Reference, method: Integrator) -> float:
     """Error of mode 1 by a method [1]."""
     problem = reference.problem
-    run = simulate(
-        problem.oscillator,
-        problem.start,
-        duration=problem.duration,
-        times=np.array([problem.probe]),
-        method=method,
-    )
+    probe = np.array([problem.probe])
+    run = simulate(problem.oscillator, problem.start, duration=problem.duration, times=probe, method=method)
     return reference.error_of(float(run.displacement[0, 0]), float(run.velocity[0, 0]))
 
 
@@ -141,11 +132,8 @@ def missed_share(problem: Problem, method: Integrator) -> float | None:
     if problem.oscillator.drive is None:
         return None
     crossing = Crossing.of(problem.oscillator.model, problem.oscillator.stop, RINGING)
-    touches = [
-        crossing.touch(method, depth, lead)
-        for depth in OVERSHOOTS
-        for lead in crossing.leads(PHASES).tolist()
-    ]
+    leads = crossing.leads(PHASES).tolist()
+    touches = [crossing.touch(method, depth, lead) for depth in OVERSHOOTS for lead in leads]
     return float(np.mean(np.isnan(touches)))
 
 
@@ -163,7 +151,7 @@ def cost_of(problem: Problem, method: Integrator, repeats: int = REPEATS) -> flo
         periods = min(MOST_PERIODS, periods * max(2, min(8, int(LONG_ENOUGH / took))))
         took = once(periods)
     times = [took, *(once(periods) for _ in range(min(repeats, int(PATIENCE / took))))]
-    return 1e6 * statistics.median(times) / periods
+    return 1e6 * median(times) / periods
 
 
 def rows_of(

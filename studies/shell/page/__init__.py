@@ -235,9 +235,8 @@ def write_page(results: Path) -> tuple[Path, list[Stored], list[str]]:
     missing = [name for name in studies() if name not in {stored.study for stored in found}]
     letters = any(stored.letters for stored in found)
     points = judged_points(found) if letters else []
-    environment = Environment(
-        loader=FileSystemLoader(Path(__file__).parent), autoescape=True, trim_blocks=True, lstrip_blocks=True
-    )
+    loader = FileSystemLoader(Path(__file__).parent)
+    environment = Environment(loader=loader, autoescape=True, trim_blocks=True, lstrip_blocks=True)
     first = found[0]
     environment.filters |= {"prose": words.prose, "cell": words.cell}
     titles = [first_line(FOLDER / name / "__init__.py").rstrip(".") for name in CHAPTERS]

@@ -47,7 +47,6 @@ from studies.shell.scene.spring import (
     spring_of,
     with_first_mode,
 )
-from studies.shell.scene.spring import elements_of as elements_of
 from studies.shell.scene.spring import first_mode as first_mode
 from studies.shell.scene.spring import free_period as free_period
 from studies.shell.scene.spring import modes_of as modes_of

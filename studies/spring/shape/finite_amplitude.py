@@ -18,9 +18,8 @@ terms leave out is the difference to the frame.
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 from itertools import product
-from typing import Annotated, TypeVar
+from typing import Annotated, ParamSpec, TypeVar
 
 import numpy as np
 from scipy.optimize import newton
@@ -33,6 +32,7 @@ from studies.physics.calibration import calibrate_thickness
 from studies.shell.scene import Scene, harmonic, nonlinear_mode_at, periods_of, spring_of
 from studies.spring.shape.shapes import TITLES, Reading
 
+P = ParamSpec("P")
 Answer = TypeVar("Answer")
 Key = tuple[Reading, float, float]  # a spring of the map: its reading, bend radius [m] and ball [kg]
 
@@ -73,10 +73,8 @@ class Survival:
 def reading_of(scene: Scene, reading: str, radius: float, ball: float) -> Scene:
     """The scene with its spring read so, the sheet as thick as the free period requires."""
     kind = {"folded": "folded_u", "side_by_side": "flat_u"}.get(reading, "cantilever")
-    changed = scene.replace(
-        {"spring.kind": kind, "spring.bend_radius_m": radius, "tip.mass_kg": ball, **COARSE}
-    )
-    return calibrate_thickness(changed, scene.single_mode.free_period_s)
+    own = {"spring.kind": kind, "spring.bend_radius_m": radius, "tip.mass_kg": ball}
+    return calibrate_thickness(scene.replace(own | COARSE), scene.single_mode.free_period_s)
 
 
 def matched(mode: NonlinearMode, effective: float) -> NonlinearMode:
@@ -89,10 +87,10 @@ def matched(mode: NonlinearMode, effective: float) -> NonlinearMode:
     return replace(mode, stiffness=float(newton(off, mode.stiffness, x1=mode.stiffness + guess)))
 
 
-def tried(question: Callable[[], Answer]) -> Answer | None:
+def tried(question: Callable[P, Answer], *arguments: P.args, **options: P.kwargs) -> Answer | None:
     """The answer, or None where there is none."""
     try:
-        return question()
+        return question(*arguments, **options)
     except (RuntimeError, ArithmeticError, np.linalg.LinAlgError):
         return None
 
@@ -105,9 +103,8 @@ def frame_period(scene: Scene, model: FiniteRotation, frequency: float) -> float
     keys = scene.single_mode
     free = math.hypot(2.0 * math.pi / keys.free_period_s, 0.5 * keys.decay_rate_per_s)
     faster = model.first_mode[0] / free
-    motion = periodic_motion(
-        model, scene.stop.gap_m, frequency=frequency * faster, decay_rate=keys.decay_rate_per_s * faster
-    )
+    here, rate = frequency * faster, keys.decay_rate_per_s * faster
+    motion = periodic_motion(model, scene.stop.gap_m, frequency=here, decay_rate=rate)
     return motion.effective_period * faster
 
 
@@ -117,15 +114,15 @@ def with_frame(scene: Scene, modes: Sequence[NonlinearMode]) -> list[NonlinearMo
     bent = spring.centreline.curvatures != 0.0
     model = FiniteRotation.of(spring, np.where(bent, ARC_ELEMENTS, STRAIGHT_ELEMENTS).tolist())
     for mode in modes:
-        mine, frame = effective(mode), tried(partial(frame_period, scene, model, mode.frequency))
+        mine, frame = effective(mode), tried(frame_period, scene, model, mode.frequency)
         differs = mine and frame and abs(frame - mine) > CLOSE
-        found.append((tried(partial(matched, mode, frame)) if frame and differs else None) or mode)
+        found.append((tried(matched, mode, frame) if frame and differs else None) or mode)
     return found
 
 
 def effective(mode: NonlinearMode) -> float | None:
     """Its effective period [s]."""
-    return tried(partial(getattr, mode, "effective_period"))
+    return tried(getattr, mode, "effective_period")
 
 
 def survivals(scene: Scene, gaps: Sequence[float], spring: Key) -> list[Survival]:
@@ -138,12 +135,8 @@ def survivals(scene: Scene, gaps: Sequence[float], spring: Key) -> list[Survival
         modes = [nonlinear_mode_at(here, f, backbone) for f in scene.drive.frequencies_hz]
         if gap == scene.stop.gap_m and ball == scene.tip.mass_kg:
             modes = with_frame(here, modes)
-        low, born = (
-            tuple(
-                tried(partial(onset_m, mode, excess, most_cycles=scene.scan.settle_cycles)) for mode in modes
-            )
-            for excess in EXCESSES
-        )
+        cycles = scene.scan.settle_cycles
+        low, born = ([tried(onset_m, mode, e, most_cycles=cycles) for mode in modes] for e in EXCESSES)
         wanted = [letter.get(mode.frequency) for mode in modes]
         places = [f"at_{mode.frequency:g}_Hz" for mode in modes]
         rows.append(

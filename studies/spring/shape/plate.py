@@ -205,10 +205,5 @@ def half_u(
     covers, seats = s[triangles].mean(axis=0) < covered, far[triangles].max(axis=0) <= seat * (1.0 + 1e-9)
     parts = {"taped": np.flatnonzero(covers), "seat": np.flatnonzero(seats)}
     start = -leg - radius
-    return (
-        sk.MeshTri(p, triangles)
-        .with_subdomains(parts)
-        .with_boundaries(
-            {"clamped": lambda x: x[0] < (1.0 - 1e-9) * start, "symmetry": lambda x: x[1] == 0.0}
-        )
-    )
+    sides = {"clamped": lambda x: x[0] < (1.0 - 1e-9) * start, "symmetry": lambda x: x[1] == 0.0}
+    return sk.MeshTri(p, triangles).with_subdomains(parts).with_boundaries(sides)

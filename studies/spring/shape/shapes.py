@@ -108,15 +108,12 @@ class Shape:
         return self.length + (0.5 * math.pi * self.bend_radius if self.bent else 0.0)
 
     @property
-    def channel_sizes(self) -> dict[str, float]:
-        """Width, flange and thickness [m] by the names of `beam.space.channel`."""
-        return {"width": self.width, "flange": self.flange, "thickness": self.thickness}
-
-    @property
     def section(self) -> SpatialSection:
         """Of the strip or channel."""
         if self.reading == "channel":
-            return channel(material=self.material, **self.channel_sizes)
+            return channel(
+                material=self.material, width=self.width, flange=self.flange, thickness=self.thickness
+            )
         strip = StripSection(material=self.material, width=self.width, thickness=self.thickness)
         return flat(strip) if self.reading == "side_by_side" else upright(strip)
 

@@ -2,21 +2,18 @@
 
 import copy
 import math
-import warnings
-from collections.abc import Iterator
-from contextlib import contextmanager
 from typing import Self
 
 import numpy as np
 from scipy import stats
 
-from beam import Refusal, SuspiciousValue
+from beam import Refusal
 from contact import ContactError, ImpactOscillator
 from studies.measurement.identify.fit.descent import Found, descend
 from studies.measurement.identify.motion.predictions import Prediction
 from studies.measurement.identify.record.records import Array, NoAnswer
 from studies.measurement.identify.record.spectrum import count_of, harmonics
-from studies.physics.parameters import parameters_of, with_values
+from studies.physics.parameters import parameters_of, through_any_value, with_values
 
 MOST = 100  # steps of a fit: a dozen are usual, a hundred along a valley of two parameters that trade off
 GAIN = 1e-3  # fall of chi^2 at which a fit ends, in the noise's variance: 0.03 standard errors
@@ -27,13 +24,6 @@ FARTHEST = {"free_period": 2.0, "frequency": 2.0}
 """Logarithm by which a search may leave where it begins: a motion of endless oscillations takes for ever."""
 LAGS = 10  # of the autocorrelation of residuals
 TINY = 1e-300  # least ratio of a value to where it starts: a step along a tangent may round to zero
-
-
-@contextmanager
-def through_any_value() -> Iterator[None]:
-    """No warnings of suspicious values, as a search may pass through any."""
-    with warnings.catch_warnings(action="ignore", category=SuspiciousValue):
-        yield
 
 
 class Problem:

@@ -14,10 +14,10 @@ import numpy as np
 
 from beam import Refusal
 from contact import ContactError
-from studies.measurement.identify.fit.problem import RANGES, SETTLED, Problem, through_any_value
+from studies.measurement.identify.fit.problem import RANGES, SETTLED, Problem
 from studies.measurement.identify.motion.predictions import Prediction
 from studies.measurement.identify.record.records import Array
-from studies.physics.parameters import with_values
+from studies.physics.parameters import through_any_value, with_values
 
 REFITS, FEW = 16, 30  # most refits to a side, and the steps of each
 NEAR = 0.15  # distance of the last r from the reach, as a part of it

@@ -165,9 +165,8 @@ def best(problems: Sequence[Problem], known: bool) -> tuple[Problem, Found]:
     ends, tried, enough = list[tuple[Problem, Found]](), list[Array](), False
     for cost, i, unknowns in sorted(begun, key=lambda one: one[:2]):
         problem, values = problems[i], problems[i].values(unknowns)[problems[i].named]
-        if (enough and len(ends) >= FINISHED) or any(
-            np.allclose(values, other, rtol=SAME, atol=0.0) for other in tried
-        ):
+        alike = any(np.allclose(values, other, rtol=SAME, atol=0.0) for other in tried)
+        if alike or (enough and len(ends) >= FINISHED):
             continue
         tried.append(values)
         try:

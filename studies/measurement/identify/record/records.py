@@ -188,10 +188,8 @@ def synthetic(
         found = [[*at, one.excess] for at, one in zip(transitions, folds, strict=True) if one is not None]
         record = Record(columns=("frequency_hz", "period", "excess"), rows=np.array(found))
     else:
-        start, strobes = (
-            onset_orbit(StroboscopicMap(oscillator=oscillator), oscillator.excess).end,
-            kind == "strobe",
-        )
+        start = onset_orbit(StroboscopicMap(oscillator=oscillator), oscillator.excess).end
+        strobes = kind == "strobe"
         begin, each = round(start.time * drive.frequency) / drive.frequency, 1.0 if strobes else 90.09
         times = np.arange(int(periods * each)) / (each * drive.frequency)
         motion = simulate(oscillator, start, periods=periods + 1, times=np.maximum(start.time, begin + times))
