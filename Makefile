@@ -44,8 +44,8 @@ test-generic: $(READY)
 	$(BIN)/python -m pytest -n 2 --dist worksteal -rs -m "not slow" $(NUMBERS)
 
 lint: $(READY)
-	$(BIN)/python -m ruff check beam contact studies tests
-	$(BIN)/python -m ruff format --check beam contact studies tests
+	$(BIN)/python -m ruff check beam contact studies tests docs
+	$(BIN)/python -m ruff format --check beam contact studies tests docs
 	$(BIN)/python -m mypy -p beam -p contact -p studies
 
 $(READY): pyproject.toml constraints.txt

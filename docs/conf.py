@@ -1,6 +1,6 @@
-"""The site: pages of this folder, the gallery, the docstrings of the packages, and the page of stored results.
+"""The site: pages of this folder, the gallery, the docstrings, and the page of stored results.
 
-Build: make site, or python -m sphinx -W --keep-going -b html docs results/site.  GALLERY=0 leaves the examples unrun.
+Build: make site.  GALLERY=0 make site does not run the examples.
 """
 
 import importlib
@@ -20,9 +20,9 @@ if not os.environ.get("DISPLAY"):
     os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")  # before vtk is imported
 sys.path[:0] = [str(HERE), str(ROOT)]
 
-import pyvista  # noqa: E402
+import pyvista
 
-import beam  # noqa: E402
+import beam
 
 pyvista.OFF_SCREEN = pyvista.BUILDING_GALLERY = True
 MATHJAX = Path(importlib.util.find_spec("sphinx-mathjax-offline").origin).parent / "static/mathjax/tex-svg.js"
@@ -81,13 +81,14 @@ sphinx_gallery_conf = {
 # what the pages take from the programs: the picture of the tour, and the page of all stored results
 MADE, REPORT = HERE / "made", ROOT / "results" / "report" / "index.html"
 MADE.mkdir(exist_ok=True)
-subprocess.run([sys.executable, "-m", "studies", "tour"], cwd=MADE, env=os.environ | {"PYTHONPATH": str(ROOT)}, check=True, stdout=subprocess.DEVNULL)
+tour, place = [sys.executable, "-m", "studies", "tour"], os.environ | {"PYTHONPATH": str(ROOT)}
+subprocess.run(tour, cwd=MADE, env=place, check=True, stdout=subprocess.DEVNULL)
 if REPORT.exists():
     page = REPORT.read_text(encoding="utf-8")
     style, body = (re.search(rf"<{tag}>(.*?)</{tag}>", page, re.DOTALL)[1] for tag in ("style", "main"))
     inside = f"<style>.report {{ {style} }}</style>\n<div class='report'>{body}</div>"
     (MADE / "results.html").write_text(inside, encoding="utf-8")
-    tags.add("stored")  # noqa: F821
+    tags.add("stored")  # noqa: F821  of Sphinx
 
 
 def formulas_as_they_stand(app, what, name, obj, options, lines):
@@ -108,7 +109,7 @@ def formulas_as_they_stand(app, what, name, obj, options, lines):
 
 
 def members_of(module, name):
-    """The public properties and the public methods of a class, its own and those of its parents in the packages."""
+    """The public properties and methods of a class, its own and the ones of its parents in the packages."""
     parents = getattr(importlib.import_module(module), name).__mro__
     ours = [vars(one) for one in parents if one.__module__.partition(".")[0] in ("beam", "contact")]
     public = {key: one for own in reversed(ours) for key, one in own.items() if not key.startswith("_")}
@@ -121,4 +122,6 @@ autosummary_context = {"members_of": members_of}
 
 
 def setup(app):
-    app.connect("autodoc-process-docstring", formulas_as_they_stand, priority=400)  # before numpydoc adds its mark
+    app.connect(
+        "autodoc-process-docstring", formulas_as_they_stand, priority=400
+    )  # before numpydoc adds its mark
