@@ -4,8 +4,8 @@ Peak force
 
 A steel cantilever is shaken at 15 Hz, a little below its lowest frequency, beside a rubber buffer.  The
 largest contact force in the first eight drive periods depends on the gap and on the base amplitude.  It is
-zero where the stop is out of reach.  Elsewhere it is mostly larger with a larger base amplitude, but not smoothly: each
-impact depends on the phase of the ringing that earlier impacts have left.
+zero where the stop is out of reach.  Elsewhere it is mostly larger with a larger base amplitude, but not
+smoothly: each impact depends on the phase of the ringing that earlier impacts have left.
 """
 
 # %%
