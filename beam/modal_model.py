@@ -258,7 +258,7 @@ class ModalModel:
 
 
 def single_mode(*, free_period: float, decay_rate: float) -> ModalModel:
-    """Return Eq. (1) of the letter: one mode of unit mass, phi = participation = 1.
+    """Return a model with one mode of unit mass, phi = participation = 1: the letter's equation (1).
 
     Parameters
     ----------

@@ -93,6 +93,7 @@ if REPORT.exists():
 
 def formulas_as_they_stand(app, what, name, obj, options, lines):
     """Indented blocks of a module's docstring are formulas; ``|x|`` outside of them is an absolute value."""
+    lines[:] = [re.sub(r"``docs/(\w+)\.md``", r":doc:`/\1`", line) for line in lines]
     if what != "module":
         return
     shown, inside = [], False

@@ -30,12 +30,14 @@ from contact import HarmonicDrive, HertzContact, ImpactOscillator, Stop, Strobos
 law = HertzContact.of_bodies(
     radius=2.5e-3, youngs_modulus=370e9, poissons_ratio=0.22, other_modulus=210e9, other_ratio=0.29
 )
-beam = ImpactOscillator(model=model, stop=Stop(gap=11.88e-3, law=law), drive=HarmonicDrive(frequency=21.5))
-print(f"the ball grazes the plate when the base moves by {1e3 * beam.grazing_amplitude():.2f} mm")
-beam = beam.with_excess(0.013)
+oscillator = ImpactOscillator(
+    model=model, stop=Stop(gap=11.88e-3, law=law), drive=HarmonicDrive(frequency=21.5)
+)
+print(f"the ball grazes the plate when the base moves by {1e3 * oscillator.grazing_amplitude():.2f} mm")
+oscillator = oscillator.with_excess(0.013)
 
 # %% Seen once in each drive period, the motion settles on an orbit
-strobed = StroboscopicMap(oscillator=beam)
+strobed = StroboscopicMap(oscillator=oscillator)
 settled = strobed.orbit(strobed.steady(), 1000).end
 again = strobed.orbit(settled, 8)
 print("impacts in each drive period:", *again.impacts, "- one in four, p4")
@@ -44,15 +46,15 @@ print(f"it repeats after four periods, to {abs(again.points[7] - again.points[3]
 # %% One collision, as the first mode feels it
 from contact import collisions, simulate
 
-times = settled.time + np.linspace(0.0, 4.0 * beam.period, 4001)
-motion = simulate(beam, settled, periods=5, times=times)
+times = settled.time + np.linspace(0.0, 4.0 * oscillator.period, 4001)
+motion = simulate(oscillator, settled, periods=5, times=times)
 hit = collisions(motion)[0]
 print(f"effective restitution {hit.restitution:.2f}, delay {1e3 * hit.delay:.2f} ms, kick {hit.kick:.2f}")
 
 # %% How far below grazing the orbit remains: followed to its fold
 from contact.orbits import Shooting, fold_of
 
-fold = fold_of(Shooting(oscillator=beam, m=4))
+fold = fold_of(Shooting(oscillator=oscillator, m=4))
 assert fold is not None
 print(f"p4 ends {-100 * fold.excess:.2f} % below grazing; Floquet multiplier {fold.multipliers[0].real:.6f}")
 
@@ -62,10 +64,10 @@ from pathlib import Path
 from matplotlib.figure import Figure
 
 figure = Figure(figsize=(7.0, 3.8), layout="constrained")
-axes, strobes = figure.subplots(), beam.tip(motion.strobe_displacement[:4])
+axes, strobes = figure.subplots(), oscillator.tip(motion.strobe_displacement[:4])
 touch = hit.first_touch - settled.time
-axes.plot(1e3 * (times - settled.time), 1e3 * beam.tip(motion.displacement), label="ball")
-axes.axhline(1e3 * beam.stop.gap, color="0.5", linestyle="--", label="plate")
+axes.plot(1e3 * (times - settled.time), 1e3 * oscillator.tip(motion.displacement), label="ball")
+axes.axhline(1e3 * oscillator.stop.gap, color="0.5", linestyle="--", label="plate")
 axes.axvline(1e3 * touch, color="tab:red", linestyle=":", label="impact")
 axes.plot(
     1e3 * (motion.strobe_time[:4] - settled.time), 1e3 * strobes, "ko", label="seen once in each drive period"
@@ -79,10 +81,10 @@ for path in (folder / "tour.png", folder / "tour.pdf"):
     print("drawn in", path)
 
 # %% Records of this rig as an experiment gives them, for `python -m studies identify results/tour_strobe.csv`
-rig = f"# frequency_hz = 21.5\n# amplitude_m = {beam.driven.amplitude!r}\n"
+rig = f"# frequency_hz = 21.5\n# amplitude_m = {oscillator.driven.amplitude!r}\n"
 noise = np.random.default_rng(1996).normal(0.0, 0.5e-6, (40 + times.size, 1))  # of the read-out, in metres
 seen = np.tile(strobes[:, None], (10, 1)) + noise[:40]
-trace = np.column_stack([times - settled.time, beam.tip(motion.displacement) + noise[40:, 0]])
+trace = np.column_stack([times - settled.time, oscillator.tip(motion.displacement) + noise[40:, 0]])
 table = np.array([[21.5, 4, fold.excess, 2.5e-4]])
 for name, rows, heading in (
     ("strobe", seen, f"{rig}x_m"),

@@ -3,6 +3,7 @@
 The long form runs each study in full; results that are stored already can be named by GRAZING_SPRING_RESULTS.
 """
 
+import doctest
 import json
 import os
 import re
@@ -32,6 +33,11 @@ def test_the_code_runs_and_prints_what_its_comments_promise(name, capsys):
     (block,) = re.findall(r"```python\n(.*?)```", TEXTS[name], flags=re.DOTALL)
     exec(compile(block, name, "exec"), {})
     assert capsys.readouterr().out.split("\n")[:-1] == re.findall(r"print\(.*\)  # (.*)", block)
+
+
+def test_the_example_on_branches_runs():
+    tried = doctest.testfile(str(ROOT / "docs" / "api" / "branches.md"), module_relative=False)
+    assert tried.attempted > 10 and tried.failed == 0
 
 
 def test_the_program_with_processes_prints_what_is_beside_it(tmp_path):

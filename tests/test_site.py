@@ -18,7 +18,7 @@ def test_formulas_of_module_docstrings_keep_their_shape():
     """The function of the settings that does it, on its own: the settings load much else."""
     text = (ROOT / "docs" / "conf.py").read_text("utf-8")
     (source,) = re.findall(r"^def formulas_as_they_stand.*?= shown$", text, re.DOTALL | re.MULTILINE)
-    exec(source, made := {})
+    exec(source, made := {"re": re})
     lines = ["With |x| small,", "    a   b", "    |c|  d", "", "    e", "then ``|y|``."]
     made["formulas_as_they_stand"](None, "module", "", None, None, lines)
     block = [".. code-block:: text", "", "    a   b", "    |c|  d", "", "    e", "", "then ``|y|``."]

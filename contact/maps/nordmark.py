@@ -54,7 +54,7 @@ def iterate_map(x, y, alpha, gamma, gamma_impact, rho, delay_term, out):
 
 @dataclass(frozen=True, kw_only=True)
 class NordmarkMap:
-    """Nordmark's map, Eqs. (2) and (3) of the letter; one step is one drive period.
+    """Nordmark's map, the letter's equations (2) and (3); one step is one drive period.
 
     It has the methods of `StrobedMap`.  A state is the array (x, y), which is also its point.  An impact
     occurs in a step that starts from x > 0.

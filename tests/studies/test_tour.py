@@ -52,7 +52,7 @@ def test_it_ends_at_a_fold_below_grazing(names):
 
 def test_the_sampled_motion_stays_before_the_plate_but_for_the_dent_of_the_contact(names):
     height = names["motion"].displacement @ names["model"].phi
-    gap = names["beam"].stop.gap
+    gap = names["oscillator"].stop.gap
     assert 0.98 * gap < height.max() < gap + 1e-4
     assert names["hit"].impacts == 1
     assert (names["run_in"] / "results" / "tour.png").stat().st_size > 5000
