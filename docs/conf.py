@@ -9,6 +9,7 @@ import os
 import re
 import subprocess
 import sys
+import textwrap
 from functools import cached_property
 from pathlib import Path
 from types import FunctionType
@@ -91,22 +92,19 @@ if REPORT.exists():
     tags.add("stored")  # noqa: F821  of Sphinx
 
 
+SET_OUT = r"((?:^(?:    .*|.*\S {3,}\S.*)\n(?: *\n)*)+)"
+"""Lines that are indented or have columns, and blank lines between them."""
+
+
 def formulas_as_they_stand(app, what, name, obj, options, lines):
-    """Indented blocks of a module's docstring are formulas; ``|x|`` outside of them is an absolute value."""
+    """Formulas and columns of a module's docstring keep their shape; ``|x|`` elsewhere is no markup."""
     lines[:] = [re.sub(r"``docs/(\w+)\.md``", r":doc:`/\1`", line) for line in lines]
-    if what != "module":
-        return
-    shown, inside = [], False
-    for line in lines:
-        indented = line.startswith("    ")
-        if line.strip() and indented != inside:
-            if shown and shown[-1].strip():
-                shown.append("")
-            if indented:
-                shown += [".. code-block:: text", ""]
-            inside = indented
-        shown.append(line if inside or "``" in line else line.replace("|", r"\|"))
-    lines[:] = shown
+    if what == "module":
+        parts = re.split(SET_OUT, "".join(f"{line}\n" for line in lines), flags=re.MULTILINE)
+        parts[::2] = [re.sub(r"\|(?![^\n]*``)", r"\|", part) for part in parts[::2]]
+        blocks = [textwrap.indent(textwrap.dedent(part), "    ") for part in parts[1::2]]
+        parts[1::2] = [f"\n.. code-block:: text\n\n{block}\n" for block in blocks]
+        lines[:] = "".join(parts).splitlines()
 
 
 def members_of(module, name):

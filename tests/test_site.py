@@ -3,6 +3,7 @@
 import re
 import subprocess
 import sys
+import textwrap
 from html import unescape
 from pathlib import Path
 from urllib.parse import unquote, urlsplit
@@ -17,12 +18,13 @@ NAMED = re.compile(r"<(a|link|img|script|source|iframe)\b[^>]*?\b(?:href|src)=\"
 def test_formulas_of_module_docstrings_keep_their_shape():
     """The function of the settings that does it, on its own: the settings load much else."""
     text = (ROOT / "docs" / "conf.py").read_text("utf-8")
-    (source,) = re.findall(r"^def formulas_as_they_stand.*?= shown$", text, re.DOTALL | re.MULTILINE)
-    exec(source, made := {"re": re})
-    lines = ["With |x| small,", "    a   b", "    |c|  d", "", "    e", "then ``|y|``."]
+    (source,) = re.findall(r"^SET_OUT.*?splitlines\(\)$", text, re.DOTALL | re.MULTILINE)
+    exec(source, made := {"re": re, "textwrap": textwrap})
+    lines = "With |x| small,\n    a   b\n\n    |c|\nthen ``|y|``.\n\n`p`    one\n       and".split("\n")
     made["formulas_as_they_stand"](None, "module", "", None, None, lines)
-    block = [".. code-block:: text", "", "    a   b", "    |c|  d", "", "    e", "", "then ``|y|``."]
-    assert lines == [r"With \|x\| small,", "", *block]
+    block, shown = [".. code-block:: text"], [line for line in lines if line]
+    formula, words = ["    a   b", "    |c|"], ["    `p`    one", "           and"]
+    assert shown == [r"With \|x\| small,", *block, *formula, "then ``|y|``.", *block, *words]
 
 
 @pytest.mark.slow
