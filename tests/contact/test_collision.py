@@ -52,12 +52,7 @@ def test_ringing_alone_can_make_the_touch(second: float, returns: bool) -> None:
     oscillator, state = two_modes(0.97, second, 0.1, 0.2)
     run = simulate(oscillator, state, duration=0.06)
     c = collisions(run, unfinished="drop")[0]
-    assert (
-        c.forced_by_ringing
-        and c.real_approach != pytest.approx(c.approach, rel=0.01)
-        and c.returns == returns
-        and c.impacts == 1
-    )
+    assert c.forced_by_ringing and c.returns == returns and c.impacts == 1
     assert all(math.isnan(x) for x in (c.approach, c.restitution, c.delay, c.kick))
     assert c.time == c.first_touch == run.impacts.start[0]
     assert c.ringing == pytest.approx(second * GAP, rel=1e-12)

@@ -119,8 +119,6 @@ def test_every_number_is_what_its_definition_says(n_modes: int, law: ContactLaw,
             rate = impacts.velocity_end[last, k] - after[1][k]
             gain += 0.5 * (rate**2 - v**2 + OMEGA[k] ** 2 * (q**2 - u**2))
         assert c.energy_to_higher_modes == pytest.approx(gain, abs=1e-11 * (OMEGA[0] * GAP) ** 2)
-        real = abs(impacts.approach[first] / v_in - 1) > 0.01 if touched is not None else True
-        assert (c.real_approach != pytest.approx(c.approach, rel=0.01)) == real
         assert c.real_approach == impacts.approach[first]
         assert c.energy_lost == pytest.approx(float(np.sum(impacts.loss[rows])), rel=1e-12, abs=1e-18)
         assert c.contact_time == pytest.approx(float(np.sum((impacts.end - impacts.start)[rows])), abs=1e-15)
