@@ -31,7 +31,7 @@ LONGEST, COMPILED = 120.0, 20.0
 """Seconds within which each call comes back, with its compilation and without; most take milliseconds, and 10
 are the bound on a quiet machine."""
 CALLS = [entry for entry in (*CONTACT, *ORBITS) if entry.over]
-TWELVE = ("born", "fold_of", "orbit_end", "orbit_exponents")
+TWELVE = ("onset_orbit", "fold_of", "orbit_end", "orbit_exponents")
 """Calls that the long form makes with twelve modes too: each of them once took ten seconds and more."""
 
 WITHOUT_A_LAW = {"frequency_band", "before_collision", "maximal_m", "coexisting_m"}

@@ -9,15 +9,7 @@ from oscillators import GAP, PHI, equation_1, modes_on_stop, newton, spring
 from scipy.signal import lfilter
 from simulated_orbit import beam
 
-from contact import (
-    Chatter,
-    NewtonRestitution,
-    NordmarkMap,
-    NotPeriodic,
-    State,
-    StroboscopicMap,
-    frequency_band,
-)
+from contact import Chatter, NordmarkMap, NotPeriodic, State, StroboscopicMap, frequency_band
 from contact.maps.nordmark_orbits import MapFamily
 from contact.orbits import MaximalFamily, PeriodicOrbit, Shooting, orbit_exponents, strobe_covariance
 
@@ -166,7 +158,7 @@ def test_slow_drift_is_a_slow_change_of_amplitude() -> None:
 @pytest.mark.parametrize("factors", [None, [1.0, 1.2, 0.3]])
 def test_no_later_amplitude_hides_that_a_motion_could_not_be_followed(factors):
     """A tip that hops 2e5 times a period under an almost elastic law."""
-    law = NewtonRestitution(local_restitution=1.0 - 1e-12)
+    law = newton(1.0 - 1e-12)
     oscillator = replace(spring(2, law, drive=(21.0, 0.0)).with_excess(0.01), load=[1000.0 / PHI[0], 0.0])
     start = State(displacement=[GAP / PHI[0], 0.0], velocity=[-1e-4 / PHI[0], 0.0])
     with pytest.raises(Chatter) as caught:

@@ -8,16 +8,11 @@ import pytest
 from oscillators import GAMMA, GAP, LIGHT, OMEGA, equation_1, light_tip, newton
 from whole_motions import pressed
 
+import contact
 from beam import ModalModel
-from contact import HarmonicDrive, NordmarkMap, Stop, StroboscopicMap
-from contact.collision import before_collision, collisions, first_collision
-from contact.hertz import HertzContact
+from contact import ImpactOscillator, State, before_collision, collisions, first_collision, simulate
 from contact.integrators import CentralDifference, Integrator
 from contact.orbits import KickFamily
-from contact.oscillator import ImpactOscillator
-from contact.simulation import simulate
-from contact.touch.delayed import DelayedRestitution
-from contact.trajectory import ImpactKind, State
 
 
 @pytest.mark.parametrize("restitution", [0.0, 0.1, 0.7, 1.0])
@@ -25,7 +20,7 @@ from contact.trajectory import ImpactKind, State
 def test_planted_restitution_and_delay_are_given_back(restitution: float, delay: float) -> None:
     for frequency in (20.90, 23.05):
         for excess in (1e-5, 1e-3, 1e-2, 5e-2):
-            law = DelayedRestitution(restitution=restitution, delay=delay)
+            law = contact.DelayedRestitution(restitution=restitution, delay=delay)
             law = newton(restitution) if delay == 0.0 < restitution else law
             found = first_collision(equation_1(frequency, law, gap=0.0107, excess=excess))
             height = math.sqrt(excess * (2 + excess))
@@ -52,12 +47,7 @@ def test_ringing_alone_can_make_the_touch(second: float, returns: bool) -> None:
     oscillator, state = two_modes(0.97, second, 0.1, 0.2)
     run = simulate(oscillator, state, duration=0.06)
     c = collisions(run, unfinished="drop")[0]
-    assert (
-        c.forced_by_ringing
-        and c.real_approach != pytest.approx(c.approach, rel=0.01)
-        and c.returns == returns
-        and c.impacts == 1
-    )
+    assert c.forced_by_ringing and c.returns == returns and c.impacts == 1
     assert all(math.isnan(x) for x in (c.approach, c.restitution, c.delay, c.kick))
     assert c.time == c.first_touch == run.impacts.start[0]
     assert c.ringing == pytest.approx(second * GAP, rel=1e-12)
@@ -105,7 +95,7 @@ def test_collision_that_is_not_final_is_refused_in_a_sentence() -> None:
 
 
 def test_contact_under_way_at_the_end_is_no_collision_yet() -> None:
-    oscillator = light_tip(4, HertzContact(stiffness=3e7))
+    oscillator = light_tip(4, contact.HertzContact(stiffness=3e7))
     start = before_collision(oscillator)
     whole = simulate(oscillator, start, periods=4)
     middle = 0.5 * (whole.impacts.start[0] + whole.impacts.end[0])
@@ -121,7 +111,7 @@ def test_contact_under_way_at_the_end_is_no_collision_yet() -> None:
 @pytest.mark.parametrize("method", [None, CentralDifference(step=1e-6)], ids=["exact", "stepped"])
 def test_contact_under_way_at_the_start_is_no_touch(method: Integrator | None) -> None:
     """Cut in the second collision: it is logged as what it is, and the others are found as without a cut."""
-    oscillator = light_tip(4, HertzContact(stiffness=3e7))
+    oscillator = light_tip(4, contact.HertzContact(stiffness=3e7))
     start = before_collision(oscillator)
     whole = simulate(oscillator, start, periods=12, method=method)
     found = collisions(whole, unfinished="drop")
@@ -129,9 +119,9 @@ def test_contact_under_way_at_the_start_is_no_touch(method: Integrator | None) -
     middle = 0.5 * (whole.impacts.start[chosen] + whole.impacts.end[chosen])
     state = simulate(oscillator, start, duration=middle - start.time, method=method).end
     rest = simulate(oscillator, state, duration=whole.end.time - middle, method=method)
-    assert rest.impacts.kind[0] == ImpactKind.UNDER_WAY and math.isnan(rest.impacts.approach[0])
+    assert rest.impacts.kind[0] == contact.ImpactKind.UNDER_WAY and math.isnan(rest.impacts.approach[0])
     assert rest.impacts.end[0] == pytest.approx(whole.impacts.end[chosen], abs=1e-8)
-    assert np.all(rest.impacts.kind[1:] == ImpactKind.IMPACT)
+    assert np.all(rest.impacts.kind[1:] == contact.ImpactKind.IMPACT)
     again = collisions(rest, unfinished="drop")
     assert len(again) == len(found) - 2 >= 3
     assert [c.kick for c in again] == pytest.approx([c.kick for c in found[2:]], abs=1e-4 if method else 1e-9)
@@ -140,7 +130,7 @@ def test_contact_under_way_at_the_start_is_no_touch(method: Integrator | None) -
 def test_stay_that_goes_on_is_a_stay() -> None:
     oscillator = pressed(3, 0.5)
     whole = simulate(oscillator, periods=30)
-    i = np.flatnonzero((whole.impacts.kind == ImpactKind.STAY) & np.isfinite(whole.impacts.end))[0]
+    i = np.flatnonzero((whole.impacts.kind == contact.ImpactKind.STAY) & np.isfinite(whole.impacts.end))[0]
     length = whole.impacts.end[i] - whole.impacts.start[i]
     held = simulate(oscillator, duration=float(whole.impacts.start[i] + 0.9 * length)).end
     rest = simulate(oscillator, held, duration=whole.end.time - held.time).impacts
@@ -150,7 +140,7 @@ def test_stay_that_goes_on_is_a_stay() -> None:
 
 def test_phase_is_kept_over_any_number_of_periods() -> None:
     oscillator = equation_1(22.2, newton(0.1), gap=0.0107, excess=1e-4)
-    start = StroboscopicMap(oscillator=oscillator).steady()
+    start = contact.StroboscopicMap(oscillator=oscillator).steady()
     first = first_collision(oscillator, start)
     for periods in (10**6, 10**8):
         later = first_collision(oscillator, replace(start, time=periods * oscillator.period))
@@ -162,7 +152,7 @@ def test_with_one_mode_each_impact_is_a_collision_however_slow_the_drive() -> No
     """Between two impacts the motion is the virtual one, and has a minimum."""
     oscillator = equation_1(0.3, newton(0.5), gap=0.0107, excess=0.02)
     run = simulate(oscillator, before_collision(oscillator), periods=3)
-    touches = run.impacts.start[run.impacts.kind == ImpactKind.IMPACT]
+    touches = run.impacts.start[run.impacts.kind == contact.ImpactKind.IMPACT]
     found = collisions(run, unfinished="drop")
     assert [c.first_touch for c in found] == touches[:-1].tolist() and touches.size > 40
     assert [c.time for c in found] == pytest.approx(touches[:-1], abs=1e-9)
@@ -174,12 +164,12 @@ def test_mode_1_is_the_one_that_moves_the_tip_most() -> None:
     rows = {"omega": OMEGA[:3], "decay_rate": 0.02 * OMEGA[:3], "phi": LIGHT[:3], "participation": GAMMA[:3]}
     one, three = (ModalModel(**{name: row[:n] for name, row in rows.items()}) for n in (1, 3))
     turned = ModalModel(**{name: row[[2, 0, 1]] for name, row in rows.items()})
-    stop, drive = Stop(gap=GAP, law=newton(0.1)), HarmonicDrive(frequency=21.5)
+    stop, drive = contact.Stop(gap=GAP, law=newton(0.1)), contact.HarmonicDrive(frequency=21.5)
     exciter = one.on_exciter(mass=20.0, suspension_hz=3.0)
     for model, other, digits in ((one, exciter, 2e-2), (three, turned, 1e-9)):
         first, second = (ImpactOscillator(model=m, stop=stop, drive=drive) for m in (model, other))
         pairs = [(model.free_period, other.free_period)]
-        pairs.append((NordmarkMap.from_oscillator(first).alpha, NordmarkMap.from_oscillator(second).alpha))
+        pairs.append(tuple(contact.NordmarkMap.from_oscillator(o).alpha for o in (first, second)))
         speed = 0.1 * first.unit_speed
         pairs.append(tuple(KickFamily(oscillator=o, m=3).orbit(speed).excess for o in (first, second)))
         hits = [first_collision(oscillator.with_excess(0.02)) for oscillator in (first, second)]

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from oscillators import FREQUENCY, GAP, PHI, heights, modes_on_stop, newton, slow, spring
 from scipy.integrate import solve_ivp
-from whole_motions import DASHPOT, FREE, HERTZ, LOSSY, SOFTER, SPRING, accelerations, name_of
+from whole_motions import DASHPOT, HERTZ, LOSSY, SOFTER, SPRING, accelerations
 
-from contact import HertzContact, HuntCrossley, ImpactOscillator, LinearContact, State, simulate
+from contact import HertzContact, HuntCrossley, ImpactOscillator, State, simulate
 
 
 @pytest.mark.parametrize("order", [1, -1])
@@ -134,28 +134,6 @@ def test_energy_is_kept_over_1e4_contacts_of_a_conservative_spring(law, allowed)
         assert np.max(np.abs(oscillator.energy(q, v)[outside] / first - 1)) < allowed
     finished = np.isfinite(run.impacts.end)
     assert np.max(np.abs(run.impacts.loss[finished])) < 1e-13 * first
-
-
-LOSING = [LOSSY, HuntCrossley(stiffness=1e6, dissipation=0.2), DASHPOT, newton(0.4)]
-LOSING += [LinearContact(stiffness=k, damping=c) for k, c in ((1e5, 60.0), (2e4, 100.0))]
-
-
-@pytest.mark.parametrize("law", LOSING, ids=name_of)
-@pytest.mark.parametrize("n_modes", [1, 6])
-def test_losses_reported_are_the_energy_that_is_gone(n_modes, law):
-    oscillator = spring(n_modes, law, damping=0.0)
-    state = State(displacement=-0.003 * np.eye(n_modes)[0], velocity=np.zeros(n_modes))
-    run = simulate(oscillator, state, duration=1.0)
-    impacts = run.impacts
-    first = oscillator.energy(state.displacement, state.velocity)
-    each = oscillator.energy(impacts.displacement_start, impacts.velocity_start)
-    each = each - oscillator.energy(impacts.displacement_end, impacts.velocity_end)
-    finished = np.isfinite(impacts.loss)
-    assert finished.sum() > 10 and run.end.regime == FREE
-    np.testing.assert_allclose(each[finished], impacts.loss[finished], rtol=0, atol=1e-12 * first)
-    gone = first - oscillator.energy(run.end.displacement, run.end.velocity)
-    assert gone == pytest.approx(impacts.loss[finished].sum(), rel=1e-11)
-    assert gone > 0.02 * first and np.all(impacts.loss[finished] >= 0)
 
 
 @pytest.mark.xfail(strict=True, reason="the force k d^(3/2) (1 + chi d') pulls where d' < -1/chi")

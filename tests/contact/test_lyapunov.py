@@ -5,14 +5,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
-import simulated_orbit
 from letters_spring import GAP, HERTZ
 from oscillators import equation_1
+from simulated_orbit import beam
 
 from contact import NordmarkMap, State, StrobedOrbit, StroboscopicMap
 from contact.orbits import Shooting, map_exponents, orbit_exponents, settle
 
 FREQUENCY = 21.50
+SINGLE = StroboscopicMap(oscillator=equation_1(FREQUENCY, gap=GAP))
+BEAM = StroboscopicMap(oscillator=beam(FREQUENCY, HERTZ))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -75,16 +77,6 @@ def divergence(strobed, state, count, align=0):
     return float(weight @ kept / weight.sum()), float(np.std(blocks, ddof=1) / math.sqrt(0.63 * 20))
 
 
-@pytest.fixture(scope="module")
-def single():
-    return StroboscopicMap(oscillator=equation_1(FREQUENCY, gap=GAP))
-
-
-@pytest.fixture(scope="module")
-def beam():
-    return StroboscopicMap(oscillator=simulated_orbit.beam(FREQUENCY, HERTZ))
-
-
 def test_the_logistic_map_has_ln_2_at_4_by_both_routes():
     system = LogisticMap(a=4.0)
     found, _end = map_exponents(system, system.steady(), 20000)
@@ -94,9 +86,9 @@ def test_the_logistic_map_has_ln_2_at_4_by_both_routes():
     assert rate == pytest.approx(math.log(2.0), abs=4.0 * error)
 
 
-def test_the_jacobians_are_the_differences_of_the_period_map(single, beam):
-    letters = NordmarkMap.from_oscillator(single.oscillator)
-    for strobed, excess in ((letters, 0.02), (single, 0.02), (beam, 1e-3), (beam, 0.02)):
+def test_the_jacobians_are_the_differences_of_the_period_map():
+    letters = NordmarkMap.from_oscillator(SINGLE.oscillator)
+    for strobed, excess in ((letters, 0.02), (SINGLE, 0.02), (BEAM, 1e-3), (BEAM, 0.02)):
         here = strobed.at(excess)
         state = settle(here, strobed.steady(), most_cycles=2000).end
         found, end = here.jacobians(state, 4)
@@ -112,8 +104,8 @@ def test_the_jacobians_are_the_differences_of_the_period_map(single, beam):
             assert difference == pytest.approx(matrix[:, direction], rel=1e-3, abs=1e-5)
 
 
-def test_without_impacts_the_exponent_is_minus_half_the_decay_rate(single, beam):
-    for strobed in (single, beam):
+def test_without_impacts_the_exponent_is_minus_half_the_decay_rate():
+    for strobed in (SINGLE, BEAM):
         here = strobed.at(-0.02)
         rate = float(here.oscillator.model.decay_rate[0])
         found = orbit_exponents(here, here.steady(), 1)
@@ -123,8 +115,8 @@ def test_without_impacts_the_exponent_is_minus_half_the_decay_rate(single, beam)
 
 
 @pytest.mark.parametrize("excess", [-0.004, 1e-3, 0.01, 0.02])
-def test_a_settled_orbit_has_the_multipliers_of_shooting(single, beam, excess):
-    for strobed in (single, beam):
+def test_a_settled_orbit_has_the_multipliers_of_shooting(excess):
+    for strobed in (SINGLE, BEAM):
         here = strobed.at(excess)
         settled = settle(here, strobed.at(1e-3).steady(), most_cycles=3000)
         period, impacts = settled.m, settled.impacts
@@ -135,9 +127,9 @@ def test_a_settled_orbit_has_the_multipliers_of_shooting(single, beam, excess):
         assert divergence(here, settled.end, 150, align=20)[0] == pytest.approx(wanted, abs=3e-3)
 
 
-def test_chaos_has_one_exponent_by_both_routes_and_the_sum_of_the_determinants(single):
-    here = single.at(0.034)
-    settled = settle(here, single.steady(), most_cycles=1500)
+def test_chaos_has_one_exponent_by_both_routes_and_the_sum_of_the_determinants():
+    here = SINGLE.at(0.034)
+    settled = settle(here, SINGLE.steady(), most_cycles=1500)
     assert settled.m == 0
     found, _end = map_exponents(here, settled.end, 500, align=20)
     flow, error = divergence(here, settled.end, 500, align=20)

@@ -83,7 +83,7 @@ if whole:
     assert hit.rebound[0] == pytest.approx(-speed, rel=1e-14) and abs(hit.loss[0]) < 1e-13
     assert hit.end[0] - hit.start[0] == pytest.approx(lasts, rel=1e-12)
     spring = modes_on_stop([154.0, 980.0], [3.56, 20.0], [10.0, 9.0], [0.1, 0.05], law=law, drive=22.2)
-    orbit = Shooting(oscillator=spring, period=5).at_speed(0.3)
+    orbit = Shooting(oscillator=spring, m=5).at_speed(0.3)
     driven, start = spring.with_excess(orbit.excess), orbit.state()
     run = simulate(driven, start, periods=5)
     assert len(run.impacts) == 1 and run.impacts.approach[0] == pytest.approx(0.3, rel=1e-9)

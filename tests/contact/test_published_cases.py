@@ -9,11 +9,8 @@ import pytest
 from oscillators import modes_on_stop, newton
 
 from beam import UniformBeam, exact_modes
-from contact.hertz import HERTZ_TIME, HertzContact, HuntCrossley
-from contact.laws import ContactLaw, LinearContact
-from contact.oscillator import ImpactOscillator
-from contact.simulation import simulate
-from contact.trajectory import State
+from contact import ContactLaw, HertzContact, HuntCrossley, ImpactOscillator, LinearContact, State, simulate
+from contact.hertz import HERTZ_TIME
 
 GAUSS_POINTS, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(24)
 

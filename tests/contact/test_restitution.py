@@ -14,20 +14,26 @@ from contact.restitution import log_restitution
 def published(zeta: float) -> float:
     """Schwager and Poeschel, Granular Matter 9 (2007) 465, Eq. (21), in its three branches; omega_0 = 1."""
     root = math.sqrt(abs(1.0 - zeta**2))
+    if zeta == 1.0:
+        return math.exp(-2.0)
     if zeta > 1.0:
         return math.exp(-zeta / root * math.log((zeta + root) / (zeta - root)))
     angle = math.atan(2.0 * zeta * root / (2.0 * zeta**2 - 1.0))
     return math.exp(-zeta / root * (angle + (math.pi if zeta < math.sqrt(0.5) else 0.0)))
 
 
-@pytest.mark.parametrize("zeta", [0.01, 0.3, 0.8, 0.999, 1.2, 4.0])
+@pytest.mark.parametrize("zeta", [0.01, 0.3, 0.8, 0.999, 1.0, 1.2, 4.0])
 def test_the_restitution_is_the_published_one_and_that_of_a_simulated_mass(zeta: float) -> None:
+    """With e = exp(-zeta omega_0 t) the force lasts t, and the mass then flies out of the stop at e v."""
     law = LinearContact(stiffness=1e6, damping=2.0 * zeta * math.sqrt(1e6 * 4.0))
     thrown = State(displacement=[0.0], velocity=[1.0])
     hit = simulate(modes_on_stop(0.0, phi=0.5, law=law), thrown, duration=0.5).impacts
     e = math.exp(log_restitution(zeta))
+    lasts = (2.0 * zeta - math.log(e) / zeta) / math.sqrt(1e6 / 4.0)
     assert e == pytest.approx(published(zeta), rel=1e-12)
     assert -hit.rebound[0] / hit.approach[0] == pytest.approx(e, rel=1e-11)
+    assert hit.end[0] - hit.start[0] == pytest.approx(lasts, rel=1e-10)
+    assert hit.loss[0] == pytest.approx(0.5 * (1.0 - e * e), rel=1e-9)
     made = LinearContact.with_restitution(stiffness=1e6, restitution=e, mass=4.0)
     assert made.damping == pytest.approx(law.damping, rel=1e-12)
 

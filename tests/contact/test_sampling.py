@@ -9,13 +9,10 @@ import pytest
 from oscillators import equation_1, modes_on_stop, newton, spring
 from whole_motions import DASHPOT, HERTZ, LOSSY, SOFTER, TABLE, WAIT, falling_body, pressed
 
+import contact
+from contact import ContactError, ImpactKind, LinearContact, Regime, State, simulate
 from contact.engine import event_loop
-from contact.errors import ContactError, UnresolvedCrossing
 from contact.integrators import CentralDifference
-from contact.laws import LinearContact, NewtonRestitution
-from contact.simulation import simulate
-from contact.touch.delayed import DelayedRestitution
-from contact.trajectory import ImpactKind, Regime, State
 
 SYSTEMS = {
     "one mode, Newton": lambda: equation_1(22.2, excess=0.05),
@@ -85,10 +82,10 @@ def test_run_split_in_two_is_the_run_in_one(name):
             if cut not in whole.impacts.start:
                 np.testing.assert_allclose(starts, reference, rtol=0, atol=1e-9 * period)
     law = oscillator.stop.law
-    if isinstance(law, NewtonRestitution):
+    if isinstance(law, contact.NewtonRestitution):
         assert Regime.SUSTAINED in regimes or name != "three modes, pressed"
     else:
-        assert (Regime.WAITING if isinstance(law, DelayedRestitution) else Regime.CONTACT) in regimes
+        assert (Regime.WAITING if isinstance(law, contact.DelayedRestitution) else Regime.CONTACT) in regimes
 
 
 def test_every_sample_is_filled_in_whatever_the_length():
@@ -175,7 +172,7 @@ def test_graze_lost_in_rounding_is_reported_and_not_passed():
         gap = (0.01 + 2.0**-17 - 0.01) * factor
         oscillator = modes_on_stop([100.0, 100.0], phi=[1.0, -1.0], law=newton(1.0), gap=gap)
         if outcome is None:
-            with pytest.raises(UnresolvedCrossing, match="neither") as caught:
+            with pytest.raises(contact.UnresolvedCrossing, match="neither") as caught:
                 simulate(oscillator, state, duration=0.05)
             assert caught.value.time == pytest.approx(0.01 * math.pi, abs=1e-3)
         else:

@@ -7,11 +7,10 @@ import numpy as np
 import pytest
 from oscillators import modes_on_stop, newton
 from scipy.integrate import solve_ivp
+from whole_motions import accelerations
 
 from beam import InvalidValue
-from contact import PowerContact, Regime, State, simulate
-from contact.hertz import HertzContact, HuntCrossley
-from contact.laws import LinearContact
+from contact import HertzContact, HuntCrossley, LinearContact, PowerContact, Regime, State, simulate
 
 STIFF = 200.0
 LAWS = {
@@ -36,12 +35,11 @@ def on_stop(law, gap, load, seed=None):
 
 def solved(oscillator, state, power):
     """(q, q') after 0.5 s by DOP853, the force being STIFF d^power."""
-    model, n = oscillator.model, oscillator.n_modes
+    phi, n, free = oscillator.model.phi, oscillator.n_modes, accelerations(oscillator)
 
     def rates(t, y):
-        depth = max(0.0, model.phi @ y[:n] - oscillator.stop.gap)
-        pull = oscillator.load - model.decay_rate * y[n:] - model.omega**2 * y[:n]
-        return np.concatenate([y[n:], pull - model.phi * STIFF * depth**power])
+        depth = max(0.0, phi @ y[:n] - oscillator.stop.gap)
+        return np.concatenate([y[n:], free(t, y[:n], y[n:]) - phi * STIFF * depth**power])
 
     start = np.concatenate([state.displacement, state.velocity])
     digits = dict(method="DOP853", rtol=1e-12, atol=1e-15, max_step=2e-2)

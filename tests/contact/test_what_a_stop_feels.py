@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from functools import partial
 from itertools import pairwise
 
 import mpmath
@@ -10,17 +11,7 @@ import pytest
 from oscillators import modes_on_stop, newton
 from scipy.integrate import simpson
 
-from beam import ModalModel
-from contact import (
-    DelayedRestitution,
-    HarmonicDrive,
-    ImpactKind,
-    ImpactOscillator,
-    Impacts,
-    State,
-    Stop,
-    simulate,
-)
+from contact import DelayedRestitution, ImpactKind, ImpactOscillator, Impacts, State, simulate
 from contact.hertz import HertzContact, HuntCrossley
 from contact.integrators import CentralDifference, Integrator, MoreauJean, Splitting
 from contact.laws import ContactLaw, LinearContact
@@ -28,21 +19,17 @@ from contact.laws import ContactLaw, LinearContact
 K, G = 1e5, 9.81
 HERTZ = HertzContact(stiffness=1e8)
 DASHPOT = LinearContact(stiffness=2e5, damping=20.0)
+LOSING = [HuntCrossley(stiffness=1e8, dissipation=0.4), DASHPOT, LinearContact(stiffness=2e4, damping=100.0)]
 
 
-def mass(
-    law: ContactLaw, gap: float = 1e-3, load: float | None = None, drive: HarmonicDrive | None = None
-) -> ImpactOscillator:
-    """A free body of 1 kg before a stop."""
-    model = ModalModel(omega=[0.0], decay_rate=[0.0], phi=[1.0], participation=[1.0], dimensionless=True)
-    force = None if load is None else [load]
-    return ImpactOscillator(model=model, stop=Stop(gap=gap, law=law), drive=drive, load=force)
+mass = partial(modes_on_stop, 0.0, participation=1.0, gap=1e-3)
+"""A free body of 1 kg before a stop."""
 
 
 def thrown(law: ContactLaw, speed: float = 1.0, **method: Integrator) -> Impacts:
     """The touch of a free body of 1 kg."""
     start = State(displacement=[0.0], velocity=[speed])
-    return simulate(mass(law), start, duration=0.05, **method).impacts
+    return simulate(mass(law=law), start, duration=0.05, **method).impacts
 
 
 def spring(law: ContactLaw, *decay: float) -> ImpactOscillator:
@@ -64,7 +51,7 @@ def test_linear_contact_has_its_closed_form(damping):
     assert touch.loss[0] == pytest.approx(0.5 * (0.7**2 - touch.rebound[0] ** 2), rel=1e-13, abs=1e-14)
 
 
-@pytest.mark.parametrize("law", [HERTZ, HuntCrossley(stiffness=1e8, dissipation=0.4), DASHPOT])
+@pytest.mark.parametrize("law", [HERTZ, *LOSING[:2]])
 def test_peak_of_many_modes_is_that_of_close_samples(law):
     """Three modes with several maxima in a touch; samples next to the largest are a second route."""
     oscillator = spring(law, 3.0, 9.0, 20.0).with_excess(0.4)
@@ -89,7 +76,7 @@ def test_peak_of_many_modes_is_that_of_close_samples(law):
         assert impacts.peak_force[i] == pytest.approx(near, rel=1e-10)
 
 
-@pytest.mark.parametrize("law", [newton(0.7), newton(0.0), HERTZ, LinearContact(stiffness=2e5)])
+@pytest.mark.parametrize("law", [newton(0.7), newton(0.0), HERTZ, LinearContact(stiffness=2e5), *LOSING])
 @pytest.mark.parametrize("length", [0.3, 0.40123, 0.9])
 def test_losses_close_the_energy_of_a_run_without_drive_and_damping(law, length):
     """Also where a contact or a stay is still closed at the end."""
@@ -110,13 +97,14 @@ def test_contact_still_closed_says_so():
     """It has force, impulse and work up to the end of the run, and no duration."""
     law = LinearContact(stiffness=K)
     begin, quarter = 1e-3, 0.5 * math.pi / math.sqrt(K)
-    run = simulate(mass(law), State(displacement=[0.0], velocity=[1.0]), duration=begin + quarter / 3)
+    closed = mass(law=law)
+    run = simulate(closed, State(displacement=[0.0], velocity=[1.0]), duration=begin + quarter / 3)
     touch = run.impacts
     assert math.isnan(touch.duration[0]) and math.isnan(touch.end[0])
     assert touch.peak_force[0] == pytest.approx(math.sqrt(K) * 0.5, rel=1e-12)
     assert touch.impulse[0] == pytest.approx(1 - math.cos(math.pi / 6), rel=1e-12)
     assert touch.loss[0] == pytest.approx(0.5 * 0.25, rel=1e-12)
-    later = simulate(mass(law), run.end, duration=0.05).impacts
+    later = simulate(closed, run.end, duration=0.05).impacts
     assert later.kind[0] == ImpactKind.UNDER_WAY
     assert later.peak_force[0] == pytest.approx(math.sqrt(K), rel=1e-12)
     assert later.impulse[0] + touch.impulse[0] == pytest.approx(2.0, rel=1e-12)
@@ -139,7 +127,7 @@ def test_ball_on_a_shaken_table_comes_to_rest_at_the_end_of_its_hops(e, f, z):
         table = amplitude * w * mpmath.cos(w * t)
         y, v = amplitude * mpmath.sin(w * t), table - restitution * (v - g * hop - table)
         hop = 2 * (v - table) / (g - amplitude * w**2 * mpmath.sin(w * t))
-    oscillator = mass(newton(e), gap=0.01, load=G, drive=HarmonicDrive(frequency=f, amplitude=z))
+    oscillator = mass(law=newton(e), gap=0.01, load=G, drive=(f, z))
     start = State(displacement=[0.0], velocity=[-2 * math.pi * f * z])
     run = simulate(oscillator, start, duration=float(t) + 0.01)
     impacts = run.impacts
