@@ -181,6 +181,10 @@ MODE = beam.single_mode(free_period=40.8e-3, decay_rate=3.56)
 LAW = contact.NewtonRestitution(local_restitution=0.1)
 
 
+def leaf(length: float, **tip: float) -> object:
+    return beam.cantilever(length=length, section=strip(), tip=beam.Tip(mass=0.004, **tip))
+
+
 def driven(**numbers: float) -> object:
     drive = contact.HarmonicDrive(**dict(frequency=22.2, amplitude=1e-3) | numbers)
     return contact.ImpactOscillator(model=MODE, stop=contact.Stop(gap=0.0107, law=LAW), drive=drive)
@@ -189,14 +193,9 @@ def driven(**numbers: float) -> object:
 @pytest.mark.parametrize(
     ("make", "words"),
     [
-        (lambda: beam.cantilever(length=0.005, section=strip()), "of the strip's length 0.005 m"),
-        (lambda: beam.cantilever(length=0.01, section=strip()), "it is a plate"),
-        (
-            lambda: beam.cantilever(
-                length=0.13, section=strip(), tip=beam.Tip(mass=0.004, rotary_inertia=1e-4)
-            ),
-            "rotary_inertia of the tip is 0.0001",
-        ),
+        (lambda: leaf(0.005), "of the strip's length 0.005 m"),
+        (lambda: leaf(0.01), "it is a plate"),
+        (lambda: leaf(0.13, rotary_inertia=1e-4), "rotary_inertia of the tip is 0.0001"),
         (lambda: beam.single_mode(free_period=0.04, decay_rate=500.0), "it hardly oscillates"),
         (lambda: driven(amplitude=1.5), "amplitude of the drive is 1.5 m"),
         (lambda: contact.ImpactOscillator(model=MODE, stop=contact.Stop(gap=3.0, law=LAW)), "gap is 3 m"),

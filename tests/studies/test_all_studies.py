@@ -1,6 +1,5 @@
 """`python -m studies --all`: what runs, what is not run again, what a failure or an interruption leaves."""
 
-import importlib
 import json
 import signal
 import subprocess
@@ -15,17 +14,6 @@ from studies.experiment.chart.__main__ import chart
 from studies.shell import every_study, programs
 from studies.shell.files import fingerprint
 from studies.shell.scene import read_scene
-
-
-def test_the_help_of_every_study_has_its_claim_its_command_and_its_options(capsys):
-    for name in programs.studies():
-        study = getattr(importlib.import_module(programs.module_of(name)), name)
-        assert study.main(["--help"]) == 0
-        printed = capsys.readouterr().out
-        assert "Run: " in printed and all(
-            f"--{each.replace('_', '-')}" in printed or each.upper() in printed
-            for each in study.defaults(False)
-        )
 
 
 @pytest.fixture

@@ -16,17 +16,6 @@ def scene(letter_scene):
     return fig_5(letter_scene)
 
 
-@pytest.fixture(scope="module")
-def calibrated(scene):
-    return Spring(scene=scene, model=model_of(scene), tip_mass_kg=scene.tip.mass_kg)
-
-
-@pytest.fixture(scope="module")
-def light(scene):
-    """Ball and damping of the higher modes with which the state born at grazing has period 6."""
-    return Spring(scene=scene, model=model.tuned(scene, 0.00425), tip_mass_kg=0.00425, higher_damping=1.5)
-
-
 def test_the_beam_of_fig_5_has_its_period_and_damping_and_keeps_ball_and_gap(scene, letter_scene):
     assert free_period(scene) == pytest.approx(letter.BREAKDOWN["free_period_s"], rel=2 * ACCURACY)
     assert strip_decay_rate(scene) == pytest.approx(letter.BREAKDOWN["decay_rate_per_s"], rel=2 * ACCURACY)
@@ -63,13 +52,16 @@ def test_the_island_of_eq_1_starts_at_the_fold_and_outlives_the_single_impact_p3
     assert found.end < -0.05
 
 
-def test_the_beam_as_calibrated_and_eq_1_are_born_without_a_period(scene, calibrated):
+def test_the_beam_as_calibrated_and_eq_1_are_born_without_a_period(scene):
+    calibrated = Spring(scene=scene, model=model_of(scene), tip_mass_kg=scene.tip.mass_kg)
     for spring in (model.single_mode(scene, 0.1), calibrated):
         cell = cell_of(spring)
         assert cell.m == 0 and cell.impacts > 20
 
 
-def test_a_lighter_ball_gives_the_letters_p6_and_p3_at_the_end_of_the_downward_scan(light):
+def test_a_lighter_ball_gives_the_letters_p6_and_p3_at_the_end_of_the_downward_scan(scene):
+    tuned = model.tuned(scene, 0.00425)
+    light = Spring(scene=scene, model=tuned, tip_mass_kg=0.00425, higher_damping=1.5)
     cell = cell_of(light)
     assert (cell.m, cell.impacts) == (6, 3)
     outcome, ways = scanned(("light", light), points=31, cycles=500, early=True)

@@ -162,13 +162,17 @@ def test_a_figure_is_kept_as_png_and_as_pdf_without_a_date(tmp_path):
 
 
 @pytest.mark.parametrize("name", names())
-def test_a_docstring_says_command_and_outputs_and_the_table_the_run_time(name):
+def test_a_docstring_says_command_and_outputs_the_help_options_and_the_table_the_run_time(name, capsys):
     account = account_of(name)
     title = " ".join(account.partition("\n\n")[0].split())
     assert title.endswith(".") and len(title) < 200
     if name in ON_THE_FRAME:
         assert "\nRun:" in account and "\nWrites:" in account and f"python -m studies {name}" in account
         assert all(1.0 <= seconds <= 600.0 for seconds in run_times()[name])
+        assert study_of(name).main(["--help"]) == 0
+        words, options = capsys.readouterr().out, study_of(name).defaults(False)
+        assert all(f"--{one.replace('_', '-')}" in words or one.upper() in words for one in options)
+        assert "Run: " in words
 
 
 def test_where_nothing_is_found_a_study_says_so(tmp_path, letter_scene, capsys):

@@ -60,7 +60,7 @@ CASES = [
 def test_what_was_put_in_comes_out_from_a_start_far_away(made, name, kind, velocity, names):
     """All within three and a half standard errors: by chance one in some hundred seeds is not."""
     oscillator = made[name]
-    record = synthetic(kind, oscillator, seed=7, velocity=velocity, periods=20 if name == "beam" else 40)
+    record = synthetic(kind, oscillator, seed=7, velocity=velocity, periods=10 if name == "beam" else 40)
     begun = oscillator if kind == "transitions" else far_from(oscillator)
     others = {n: v.value for n, v in parameters_of(oscillator).items() if n not in names}
     found = fit(record, with_values(begun, others), names)
@@ -107,7 +107,7 @@ def test_restitution_and_delay_trade_off_and_the_profile_shows_it(made):
 
 
 def test_noise_that_is_larger_than_it_is_said_to_be_is_noticed(made):
-    record = synthetic("displacement", made["one_mode"], seed=1, noise=1e-6, periods=20)
+    record = synthetic("strobe", made["one_mode"], seed=1, noise=1e-6)
     for noise in (0.5e-6, 1e-6):
         assert fit(record, made["one_mode"], NAMES, noise=noise).too_small == (noise < 1e-6)
 

@@ -198,7 +198,7 @@ def test_without_impacts_the_linear_motion_is_the_answer(scene_of_eq1):
 
 def test_a_hum_beside_a_steady_motion_is_no_free_mode(scene_of_eq1):
     """Nor an impact where it is 9/4 of the drive: no start, or a fit that its residuals contradict."""
-    time, noise = np.arange(4000) / 2000.0, 1e-6 * np.random.default_rng(0).standard_normal(4000)
+    time, noise = np.arange(2000) / 2000.0, 1e-6 * np.random.default_rng(0).standard_normal(2000)
     for frequency, sentence in {
         23.7: "a line at 50 Hz of .* does not decay: hum|cannot determine decay_rate",
         22.2: "repeats, but not as|no motion like|best values found, of unknown error",

@@ -13,10 +13,10 @@ from record_trials import begun, trial_of
 from studies.measurement.identify.fit.search import fit
 from studies.measurement.identify.record.records import Record
 
-QUICK = {"equation_1": (24, 28, 11, 9, 38, 45), "two_modes": (5, 52, 22, 40, 32, 41)}
+QUICK = {"equation_1": (24, 28, 11, 9, 38, 45), "two_modes": (5, 52, 22, 40, 32)}
 """Records of p1 to p6 that determine all parameters and are soon fitted.  The drive is known for even seeds;
-some have two touches an orbit (9, 22, 40, 32, 41), some noise above 0.2 % of the gap (28, 11, 9, 38, 45, 5,
-22, 32, 41)."""
+some have two touches an orbit (9, 22, 40, 32), some noise above 0.2 % of the gap (28, 11, 9, 38, 45, 5, 22,
+32)."""
 
 
 @pytest.mark.parametrize(("kind", "seeds"), [*QUICK.items(), *slow(*((kind, range(30)) for kind in QUICK))])
@@ -34,8 +34,7 @@ def test_truth_is_found_without_knowing_it(kind: str, seeds: Sequence[int]) -> N
 
 
 @pytest.mark.parametrize(
-    ("kind", "seed", "known"),
-    [("equation_1", 9, True), ("equation_1", 11, True), ("equation_1", 2, False), ("two_modes", 1, True)],
+    ("kind", "seed", "known"), [("equation_1", 9, True), ("equation_1", 2, False), ("two_modes", 22, True)]
 )
 def test_phase_offset_sign_and_lost_rows_are_no_obstacle(kind: str, seed: int, known: bool) -> None:
     """The reading is turned, shifted by 3 mm and begins at 7 s; one row in ten is lost.

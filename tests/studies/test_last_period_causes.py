@@ -6,11 +6,7 @@ import numpy as np
 import pytest
 
 from beam import single_mode
-from contact import StroboscopicMap
-from contact.orbits import onset_m
 from studies.experiment.last_period.causes import causes_of, cubic, effect_of
-from studies.letter import PERIODS
-from studies.shell.scene import single_mode_at
 
 
 def test_recoil_has_the_frequencies_and_the_mobility_of_two_bodies():
@@ -64,10 +60,3 @@ def test_p10_is_born_from_where_it_should_be(letter_scene, causes):
 )
 def test_recoil_of_a_base_on_which_t_was_measured_moves_nothing(letter_scene, causes, name, excess):
     assert effect_of(letter_scene, 1.05, causes[name]).p10_from == pytest.approx(excess, rel=0.05)
-
-
-@pytest.mark.parametrize(("period", "six"), [(40.70e-3, 0), (40.72e-3, 1), (40.74e-3, 1), (40.76e-3, 0)])
-def test_all_six_at_1e_3_need_an_effective_period_of_40_71_to_40_745_ms(letter_scene, period, six):
-    scene = letter_scene.replace({"single_mode.free_period_s": period})
-    strobed = {m: StroboscopicMap(oscillator=single_mode_at(scene, f)) for f, m in PERIODS.items()}
-    assert all(onset_m(one, most_cycles=8000) == m for m, one in strobed.items()) == six

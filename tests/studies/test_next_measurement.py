@@ -5,10 +5,10 @@ import math
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
+from oscillators import equation_1
 from scipy.optimize import least_squares
 
-from beam import single_mode
-from contact import DelayedRestitution, HarmonicDrive, ImpactOscillator, Stop, simulate
+from contact import DelayedRestitution, simulate
 from contact.orbits import Shooting
 from studies.measurement.identify import __main__ as program
 from studies.measurement.identify.record.records import synthetic
@@ -24,10 +24,7 @@ PLAN = Plan()
 
 def of(frequency):
     """Eq. (1) with two parameters."""
-    law = DelayedRestitution(restitution=0.1, delay=2e-4)
-    model = single_mode(free_period=40.80e-3, decay_rate=3.56)
-    drive = HarmonicDrive(frequency=frequency)
-    return ImpactOscillator(model=model, stop=Stop(gap=11.9e-3, law=law), drive=drive)
+    return equation_1(frequency, DelayedRestitution(restitution=0.1, delay=2e-4), gap=11.9e-3)
 
 
 def node(frequency, period, excess):

@@ -33,19 +33,13 @@ KEPT = "modes.count=8"
 
 
 @pytest.mark.parametrize("name", OWN)
-def test_eq_1_of_the_scene_is_its_first_mode(name):
+def test_eq_1_of_the_scene_is_its_first_mode_and_the_same_period_is_born_at_the_same_f_t(name):
+    """The letter's universality: what its spring does at f T another spring does too, and the map says so."""
     scene = read_scene(name, [KEPT])
     model = model_of(scene)
     period = 2.0 * math.pi / math.sqrt(model.omega[0] ** 2 - (0.5 * model.decay_rate[0]) ** 2)
     assert scene.single_mode.free_period_s == pytest.approx(period, rel=5e-4)
     assert scene.single_mode.decay_rate_per_s == pytest.approx(model.decay_rate[0], rel=1e-3)
-
-
-@pytest.mark.parametrize("name", OWN)
-def test_the_same_period_is_born_at_the_same_f_t(name):
-    """The letter's universality: what its spring does at f T another spring does too, and the map says so."""
-    scene = read_scene(name, [KEPT])
-    model = model_of(scene)
     for frequency, period in list(periods_of(scene).items())[:2]:
         strobed = StroboscopicMap(oscillator=beam_at(scene, frequency, model).with_excess(1e-3))
         settled = settle(strobed, strobed.steady(), most_cycles=4000)
@@ -160,16 +154,11 @@ def test_a_study_of_one_frequency_takes_one_of_the_scene():
     "name, number, kind, error",
     [
         ("hunt_crossley", "dissipation_s_per_m=0.3", contact.HuntCrossley, 1e-6),
-        (
-            "tsuji",
-            "local_restitution=0.5",
-            contact.PowerContact,
-            1e-4,
-        ),  # the force begins as the fourth root of time
+        ("tsuji", "local_restitution=0.5", contact.PowerContact, 1e-4),
     ],
 )
 def test_the_force_of_a_damped_law_changes_the_momentum_of_the_tip(name, number, kind, error):
-    """v' = -c v - omega^2 u - phi N, integrated over the contact."""
+    """v' = -c v - omega^2 u - phi N, integrated over the contact; N of Tsuji begins as time to the 1/4."""
     laws = [f"contact.law={name}", f"contact.{number}", "modes.count=1"]
     oscillator = beam_at(read_scene("letter", laws), 22.2)
     assert isinstance(oscillator.stop.law, kind)

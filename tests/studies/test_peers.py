@@ -3,10 +3,11 @@
 import math
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 import pytest
-from oscillators import equation_1, modes_on_stop, newton
+from oscillators import equation_1, light_tip, newton
 
 import contact
 from contact import ContactError, HertzContact, ImpactOscillator, LinearContact, State, Trajectory, simulate
@@ -31,14 +32,7 @@ def solver(label: str, tolerance: float) -> Integrator:
     return OutsideSolver(solver=label, tolerance=tolerance)
 
 
-def spring(n_modes: int, law: contact.ContactLaw, *, excess: float = 0.02) -> ImpactOscillator:
-    """The first modes of a driven spring of 24.5 Hz; the stop 5 mm away."""
-    k = np.arange(n_modes)
-    omega = 154.0 * (1.0 + 2.0 * k) ** 1.5
-    shapes = 10.0 / (1.0 + 0.4 * k), 0.09 / (1.0 + k)
-    return modes_on_stop(omega, 0.02 * omega, *shapes, law=law, gap=0.005, drive=22.2).with_excess(excess)
-
-
+spring = partial(light_tip, excess=0.02, frequency=22.2)
 EQUATION_1 = equation_1(22.2, excess=0.2)
 
 
@@ -160,10 +154,8 @@ def test_wrong_use_is_refused() -> None:
     late = contact.DelayedRestitution(restitution=0.1, delay=1e-4)
     with pytest.raises(TypeError):
         simulate(equation_1(22.2, late), periods=1, method=method)
-    for law in (
-        LinearContact(stiffness=3e5, damping=20.0),
-        contact.HuntCrossley(stiffness=1e9, dissipation=0.3),
-    ):
+    lossy = contact.HuntCrossley(stiffness=1e9, dissipation=0.3)
+    for law in (LinearContact(stiffness=3e5, damping=20.0), lossy):
         with pytest.raises(TypeError, match="law of the stop"):
             simulate(spring(2, law), periods=1, method=method)
     with pytest.raises(ValueError, match="tolerance"):

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from oscillators import MODES
 
 from beam import ModalModel
 from contact import first_collision, simulate
@@ -15,12 +16,7 @@ from studies.methods.stability.implicit_energy import STIFF_GROWTH, evenly, sing
 from studies.methods.stability.model import energy_after, pressed, threshold
 from studies.shell.scene import beam_at
 
-MODEL = ModalModel(
-    omega=[154.0, 960.0, 2450.0],
-    decay_rate=[3.56, 20.0, 55.0],
-    phi=[8.0, 4.7, 3.6],
-    participation=[0.1, 0.05, 0.03],
-)
+MODEL = ModalModel(**MODES["three modes"])
 
 
 def test_a_threshold_is_found_over_many_decades_and_only_if_it_was_seen_on_both_sides():

@@ -2,10 +2,11 @@
 
 import math
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
-from oscillators import modes_on_stop, newton
+from oscillators import light_tip, newton
 
 import contact
 from contact import ContactLaw, HertzContact, LinearContact, Stop, before_collision, first_collision, simulate
@@ -15,9 +16,8 @@ from studies.methods.peers import missing_solvers
 from studies.methods.work_precision import gradients
 from studies.methods.work_precision.costs import heyoka_orbit
 from studies.methods.work_precision.methods import EXACT, STEPPED, Setting, Sweep, sweeps_for
-from studies.methods.work_precision.methods import STEPS as STEPS_OF
 from studies.methods.work_precision.model import Reference, in_turns, missed_share, reference_of, rows_of
-from studies.methods.work_precision.problems import Problem, driven_problem, hertz_beam, linear_beam
+from studies.methods.work_precision.problems import driven_problem, hertz_beam, linear_beam
 from studies.methods.work_precision.reference import extended_motion
 from studies.shell.scene import read_scene, single_mode_at
 
@@ -25,11 +25,7 @@ SCENE = read_scene("letter", [])
 FEW_MODES = SCENE.replace({"modes.count": 4})
 
 
-def leaf(law: ContactLaw, excess: float = 0.013) -> contact.ImpactOscillator:
-    """Three modes near those of the letter's spring."""
-    omega, decay = 2 * np.pi * np.array([24.5, 152.0, 390.0]), [3.56, 21.0, 55.0]
-    shapes = [8.1, 4.7, 3.6], [0.1, 0.03, 0.02]
-    return modes_on_stop(omega, decay, *shapes, law=law, gap=0.0107, drive=21.5).with_excess(excess)
+leaf = partial(light_tip, 3, excess=0.013)
 
 
 @pytest.mark.parametrize(
@@ -54,10 +50,8 @@ def test_the_exact_method_agrees_with_the_reference(law: ContactLaw) -> None:
 
 
 def test_what_the_reference_cannot_follow_is_refused() -> None:
-    for law in (
-        contact.HuntCrossley(stiffness=1e8, dissipation=0.5),
-        LinearContact(stiffness=1e5, damping=1.0),
-    ):
+    lossy = contact.HuntCrossley(stiffness=1e8, dissipation=0.5)
+    for law in (lossy, LinearContact(stiffness=1e5, damping=1.0)):
         with pytest.raises(ValueError, match="law of the stop"):
             extended_motion(leaf(law), before_collision(leaf(law)), 0.1)
     deep = leaf(HertzContact(stiffness=1e8))
@@ -65,30 +59,6 @@ def test_what_the_reference_cannot_follow_is_refused() -> None:
     touch = simulate(deep, start, periods=1).impacts
     with pytest.raises(ValueError, match="in a contact"):
         extended_motion(deep, start, 0.5 * (touch.start[0] + touch.end[0]))
-
-
-def thrown() -> Reference:
-    """Three modes that touch where the run begins, on the grid: nothing scatters about the stated order."""
-    driven = leaf(LinearContact(stiffness=45000.0))
-    oscillator = replace(driven, drive=None, stop=replace(driven.stop, gap=0.0))
-    start = contact.State(displacement=np.zeros(3), velocity=np.array([0.4, 0.0, 0.0]))
-    touch = float(simulate(oscillator, start, duration=0.02).impacts.end[0])
-    size, times = 0.005 / oscillator.model.phi[0], ("probe", "duration", "period")
-    motion = dict(oscillator=oscillator, start=start, size=size, speed=0.4)
-    costs = dict(cost_start=start, cost_periods=1, contact_time=touch)
-    ends = dict.fromkeys(times, 1.5 * touch)
-    return reference_of(Problem(name="thrown", title="", **motion, **ends, **costs))
-
-
-@pytest.mark.parametrize("label", [one for one in STEPS_OF if "Jean" not in one and "nonsm" not in one])
-def test_errors_fall_with_the_square_of_the_step(label: str) -> None:
-    """The order of smooth motion, but for the release between two grid points, which leaves h^2."""
-    reference = thrown()
-    (sweep,) = [one for one in sweeps_for(reference.problem) if one.label == label]
-    rows = rows_of(reference, replace(sweep, settings=sweep.settings[2:6]), repeats=1)
-    assert not any(one.failed for one in rows)
-    step, error = np.log(np.array([(one.value, one.error) for one in rows], dtype=float)).T
-    assert np.polyfit(step, error, 1)[0] == pytest.approx(2.0, abs=0.15)
 
 
 def test_linear_contact_lasts_as_long_as_that_of_hertz() -> None:
