@@ -213,7 +213,8 @@ def test_the_console_command_calls_itself_by_its_own_name(tmp_path):
 @pytest.mark.slow
 def test_the_source_archive_is_whole_and_its_wheel_runs_from_an_empty_folder(tmp_path):
     source, place, empty = (tmp_path / name for name in ("source", "environment", "empty"))
-    left = shutil.ignore_patterns(".git", ".venv", "results", "build", "dist", "__pycache__", "*.egg-info")
+    made = "results", "build", "dist", "__pycache__", "*.egg-info", "made", "examples"
+    left = shutil.ignore_patterns(".git", ".venv", *made)
     shutil.copytree(ROOT, source, ignore=left)
     tops = {*PACKAGES, *"tests docs .ci CHANGELOG.md CITATION.cff CONTRIBUTING.md constraints.txt".split()}
     here = {path.relative_to(source) for top in tops for path in [source / top, *(source / top).rglob("*")]}
