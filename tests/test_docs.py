@@ -102,8 +102,8 @@ def time_in_words(us: float) -> str:
     return f"{us:g} µs" if us < 1000.0 else f"{us / 1000.0:g} ms"
 
 
-def test_the_rows_of_the_tables_are_computed_values():
-    frequency = 22.20
+@pytest.mark.parametrize("frequency", [pytest.param(21.50, marks=pytest.mark.slow), 22.20])
+def test_the_rows_of_the_tables_are_computed_values(frequency):
     scene, _ = least_modes(read_scene("letter"), transitions.needs)
     rows = rows_at(scene, frequency, model_of(scene)).rows
     periods = [f"p{row.m}" for row in rows if row.description != "two_parameters"]
