@@ -84,13 +84,13 @@ MADE, REPORT = HERE / "made", ROOT / "results" / "report" / "index.html"
 MADE.mkdir(exist_ok=True)
 tour, place = [sys.executable, "-m", "studies", "tour"], os.environ | {"PYTHONPATH": str(ROOT)}
 subprocess.run(tour, cwd=MADE, env=place, check=True, stdout=subprocess.DEVNULL)
+inside = """<p>Nothing is stored yet. <code>make study</code> runs the main study, <code>python -m studies --all</code>
+every study. Then <code>make site</code> fills this page.</p>"""
 if REPORT.exists():
     page = REPORT.read_text(encoding="utf-8")
     style, body = (re.search(rf"<{tag}>(.*?)</{tag}>", page, re.DOTALL)[1] for tag in ("style", "main"))
     inside = f"<style>.report {{ {style} }}</style>\n<div class='report'>{body}</div>"
-    (MADE / "results.html").write_text(inside, encoding="utf-8")
-    tags.add("stored")  # noqa: F821  of Sphinx
-
+(MADE / "results.html").write_text(inside, encoding="utf-8")
 
 SET_OUT = r"((?:^(?:    .*|.*\S {3,}\S.*)\n(?: *\n)*)+)"
 """Lines that are indented or have columns, and blank lines between them."""
