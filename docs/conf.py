@@ -84,8 +84,8 @@ MADE, REPORT = HERE / "made", ROOT / "results" / "report" / "index.html"
 MADE.mkdir(exist_ok=True)
 tour, place = [sys.executable, "-m", "studies", "tour"], os.environ | {"PYTHONPATH": str(ROOT)}
 subprocess.run(tour, cwd=MADE, env=place, check=True, stdout=subprocess.DEVNULL)
-inside = """<p>Nothing is stored yet. <code>make study</code> runs the main study, <code>python -m studies --all</code>
-every study. Then <code>make site</code> fills this page.</p>"""
+inside = """<p>Nothing is stored yet. <code>make study</code> runs the main study,
+<code>python -m studies --all</code> every study. Then <code>make site</code> fills this page.</p>"""
 if REPORT.exists():
     page = REPORT.read_text(encoding="utf-8")
     style, body = (re.search(rf"<{tag}>(.*?)</{tag}>", page, re.DOTALL)[1] for tag in ("style", "main"))
