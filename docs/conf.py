@@ -121,6 +121,5 @@ autosummary_context = {"members_of": members_of}
 
 
 def setup(app):
-    app.connect(
-        "autodoc-process-docstring", formulas_as_they_stand, priority=400
-    )  # before numpydoc adds its mark
+    early = 400  # before numpydoc, at 500, adds its mark
+    app.connect("autodoc-process-docstring", formulas_as_they_stand, priority=early)
