@@ -56,7 +56,8 @@ class HertzContact(ContactLaw):
     -----
     The law holds for a smooth ball on a thick plate while both stay elastic and the contact is slow against
     the waves in them.  No run checks this.  The pressure in the contact is at most 3 N/(2 pi R d), with the
-    radius R of the ball.  How many modes a force needs depends on the contact time: see ``docs/adequacy.md``.
+    radius R of the ball.  How many modes a force needs depends on the contact time:
+    see ``docs/methods/adequacy.md``.
 
     Examples
     --------

@@ -52,7 +52,7 @@ class ImpactOscillator:
     simultaneous : {"moreau", "sequential"}
         Rule if several stops of Newton's law are hit at one instant, or one while a point rests on another:
         Moreau's law for all of them, or one after the other, the fastest approach first
-        (``contact.touch.impulses``).  ``docs/several_stops.md`` compares the two.
+        (``contact.touch.impulses``).  ``docs/guide/several_stops.md`` compares the two.
 
     Raises
     ------

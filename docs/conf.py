@@ -57,7 +57,7 @@ html_theme_options = {
     "show_prev_next": False,
     "navigation_with_keys": False,
     "navbar_end": ["theme-switcher"],
-    "header_links_before_dropdown": 8,
+    "header_links_before_dropdown": 9,
     "footer_start": [],
     "footer_end": [],
 }
@@ -98,7 +98,7 @@ SET_OUT = r"((?:^(?:    .*|.*\S {3,}\S.*)\n(?: *\n)*)+)"
 
 def formulas_as_they_stand(app, what, name, obj, options, lines):
     """Formulas and columns of a module's docstring keep their shape; ``|x|`` elsewhere is no markup."""
-    lines[:] = [re.sub(r"``docs/(\w+)\.md``", r":doc:`/\1`", line) for line in lines]
+    lines[:] = [re.sub(r"``docs/([\w/]+)\.md``", r":doc:`/\1`", line) for line in lines]
     if what == "module":
         parts = re.split(SET_OUT, "".join(f"{line}\n" for line in lines), flags=re.MULTILINE)
         parts[::2] = [re.sub(r"\|(?![^\n]*``)", r"\|", part) for part in parts[::2]]

@@ -24,28 +24,36 @@ from studies.shell.programs import names as programs
 from studies.shell.scene import model_of, read_scene
 
 ROOT = Path(__file__).parent.parent
-TEXTS = {path.stem: path.read_text("utf-8") for path in (ROOT / "README.md", *(ROOT / "docs").glob("*.md"))}
+DOCS = ROOT / "docs"
+PAGES = [path for path in DOCS.rglob("*.md") if not {"made", "examples"} & set(path.relative_to(DOCS).parts)]
+TEXTS = {str(path.relative_to(DOCS))[:-3]: path.read_text("utf-8") for path in PAGES}
+TEXTS["README"] = (ROOT / "README.md").read_text("utf-8")
 PLAIN = " ".join(" ".join(TEXTS.values()).split())
 
 
-@pytest.mark.parametrize("name", ["README", "scene", "several_stops", "adequacy"])
-def test_the_code_runs_and_prints_what_its_comments_promise(name, capsys):
-    (block,) = re.findall(r"```python\n(.*?)```", TEXTS[name], flags=re.DOTALL)
+BLOCK = re.compile(r"```python\n(.*?)```", re.DOTALL)
+RUN_APART = {"guide/sweep"}  # several processes
+
+
+@pytest.mark.parametrize("name", sorted({p for p in TEXTS if BLOCK.search(TEXTS[p])} - RUN_APART))
+def test_the_code_of_a_page_runs_and_prints_what_its_comments_promise(name, capsys, monkeypatch, tmp_path):
+    monkeypatch.chdir(tmp_path)
+    block = "".join(BLOCK.findall(TEXTS[name]))
     exec(compile(block, name, "exec"), {})
     assert capsys.readouterr().out.split("\n")[:-1] == re.findall(r"print\(.*\)  # (.*)", block)
 
 
 def test_the_example_on_branches_runs():
-    tried = doctest.testfile(str(ROOT / "docs" / "api" / "branches.md"), module_relative=False)
+    tried = doctest.testfile(str(DOCS / "api" / "branches.md"), module_relative=False)
     assert tried.attempted > 10 and tried.failed == 0
 
 
 def test_the_program_with_processes_prints_what_is_beside_it(tmp_path):
-    (block,) = re.findall(r"```python\n(.*?)```", TEXTS["sweep"], flags=re.DOTALL)
+    (block,) = BLOCK.findall(TEXTS["guide/sweep"])
     (tmp_path / "sweep.py").write_text(block)
     call, place = [sys.executable, str(tmp_path / "sweep.py")], os.environ | {"PYTHONPATH": str(ROOT)}
     run = subprocess.run(call, env=place, capture_output=True, text=True, timeout=300, check=True)
-    assert re.findall(r"```text\n(.*?)```", TEXTS["sweep"], flags=re.DOTALL) == [run.stdout]
+    assert re.findall(r"```text\n(.*?)```", TEXTS["guide/sweep"], flags=re.DOTALL) == [run.stdout]
 
 
 def test_the_readme_is_short_and_every_link_leads_somewhere():
@@ -53,9 +61,9 @@ def test_the_readme_is_short_and_every_link_leads_somewhere():
     assert len(TEXTS["README"].splitlines()) <= 125 and len(re.findall(r"(?<![\w.])\d[\d.]*", prose)) <= 80
     for name, text in TEXTS.items():
         for target in re.findall(r"\]\((?!https:)([^)#]*)", text):
-            source = re.sub(r"^examples/index.rst", "gallery/GALLERY_HEADER.rst", target)
-            source = re.sub(r"^examples/(\w+).rst", r"gallery/\1.py", source)
-            assert ((ROOT if name == "README" else ROOT / "docs") / source).exists(), target
+            source = re.sub(r"\bexamples/index.rst", "gallery/GALLERY_HEADER.rst", target)
+            source = re.sub(r"\bexamples/(\w+).rst", r"gallery/\1.py", source)
+            assert ((ROOT if name == "README" else (DOCS / name).parent) / source).exists(), (name, target)
 
 
 def test_words_with_a_meaning_of_their_own_are_in_the_glossary():
@@ -78,11 +86,11 @@ def test_the_run_times_are_those_of_the_table():
     """`python -m studies --all` has measured it."""
     row = r"^\| .*`python -m studies(?: ([a-z_]+))?[^`]*` \|.*?\|? ?([\d.]+ (?:s|min)) \|$"
     known = {name: in_words(full) for name, (full, _) in run_times().items()}
-    for text in (TEXTS["README"], TEXTS["studies"]):
+    for text in (TEXTS["README"], TEXTS["guide/studies"]):
         written = {name or MAIN: words for name, words in re.findall(row, text, flags=re.MULTILINE)}
         assert len(written) > 3 and written.items() <= known.items()
     assert written == known and f"make study      # then {known[MAIN]}:" in TEXTS["README"]
-    assert f"({in_words(sum(full for full, _ in run_times().values()))})" in TEXTS["studies"]
+    assert f"({in_words(sum(full for full, _ in run_times().values()))})" in TEXTS["guide/studies"]
 
 
 def test_the_costs_are_those_of_the_table():
@@ -92,7 +100,7 @@ def test_the_costs_are_those_of_the_table():
         entries = [
             word for us, part in pairs for word in (time_in_words(us), f"{part:.0%}".replace("%", " %"))
         ]
-        assert f"| {cells(name, *entries)} |".replace("| 0 % |", "| none |") in TEXTS["costs"]
+        assert f"| {cells(name, *entries)} |".replace("| 0 % |", "| none |") in TEXTS["methods/costs"]
     fast, slow = (time_in_words(costs[name]["microseconds_at_1e-4"]) for name in ("exact", "SciPy DOP853"))
     assert f"takes {fast}" in PLAIN and f"SciPy (DOP853) takes {slow}" in PLAIN
 
@@ -109,7 +117,7 @@ def test_the_rows_of_the_tables_are_computed_values(frequency):
     periods = [f"p{row.m}" for row in rows if row.description != "two_parameters"]
     assert f"| {frequency:.2f} | p{rows[0].letter} | {' | '.join(periods)} |" in TEXTS["README"]
     ends = " | ".join(end_in_words(row.excess_down) for row in rows)
-    assert f"| {frequency:.2f} | {periods[-1]} | {ends} |" in TEXTS["transitions"]
+    assert f"| {frequency:.2f} | {periods[-1]} | {ends} |" in TEXTS["letter/transitions"]
 
 
 def end_in_words(excess: float) -> str:
