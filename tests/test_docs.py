@@ -29,10 +29,10 @@ PAGES = [path for path in DOCS.rglob("*.md") if not {"made", "examples"} & set(p
 TEXTS = {str(path.relative_to(DOCS))[:-3]: path.read_text("utf-8") for path in PAGES}
 TEXTS["README"] = (ROOT / "README.md").read_text("utf-8")
 PLAIN = " ".join(" ".join(TEXTS.values()).split())
-
-
 BLOCK = re.compile(r"```python\n(.*?)```", re.DOTALL)
-RUN_APART = {"guide/sweep"}  # several processes
+WITH_OUTPUT = re.compile(r"```python\n(.*?)```\n\n```text\n(.*?)```", re.DOTALL)
+RUN_APART = {"guide/sweep", "methods/graze"}  # pages with programs of their own, each with its output
+PROGRAMS = [(name, *pair) for name in sorted(RUN_APART) for pair in WITH_OUTPUT.findall(TEXTS[name])]
 
 
 @pytest.mark.parametrize("name", sorted({p for p in TEXTS if BLOCK.search(TEXTS[p])} - RUN_APART))
@@ -48,12 +48,15 @@ def test_the_example_on_branches_runs():
     assert tried.attempted > 10 and tried.failed == 0
 
 
-def test_the_program_with_processes_prints_what_is_beside_it(tmp_path):
-    (block,) = BLOCK.findall(TEXTS["guide/sweep"])
-    (tmp_path / "sweep.py").write_text(block)
-    call, place = [sys.executable, str(tmp_path / "sweep.py")], os.environ | {"PYTHONPATH": str(ROOT)}
+@pytest.mark.parametrize("name, program, output", PROGRAMS, ids=[program[0] for program in PROGRAMS])
+def test_a_program_on_its_own_prints_what_is_beside_it(name, program, output, tmp_path):
+    assert sum(page == name for page, *_ in PROGRAMS) == len(BLOCK.findall(TEXTS[name]))
+    for library in re.findall(r"^(?:import|from) (heyoka|sksundae)", program, flags=re.MULTILINE):
+        pytest.importorskip(library)
+    (tmp_path / "program.py").write_text(program)
+    call, place = [sys.executable, str(tmp_path / "program.py")], os.environ | {"PYTHONPATH": str(ROOT)}
     run = subprocess.run(call, env=place, capture_output=True, text=True, timeout=300, check=True)
-    assert re.findall(r"```text\n(.*?)```", TEXTS["guide/sweep"], flags=re.DOTALL) == [run.stdout]
+    assert run.stdout == output
 
 
 def test_the_readme_is_short_and_every_link_leads_somewhere():
@@ -131,7 +134,7 @@ def cells(*values: object) -> str:
 
 
 COMPUTED = "transitions hysteresis noise last_period effective_impact soft_wall breakdown identify".split()
-COMPUTED += ["adequacy", "validation", "shape"]
+COMPUTED += ["adequacy", "validation", "shape", "stability"]
 """Studies whose numbers stand in README and docs."""
 
 CAUSES = {
@@ -208,6 +211,17 @@ def facts_of(name: str, found: dict) -> Iterator[str]:
         ends = "multipliers", "grazing amplitude", "a spring", "at grazing", "within 4 %", "within 3 %"
         for words, row in zip(ends, found["sources"], strict=True):
             yield cells(words, row["agrees"], row["differs"])
+    if name == "stability":
+        at = {row["case"]: row["measured"] for row in rows}
+        gain = (
+            f"{at[f'one short linear contact, h ω_c = {x}']:.1f} at $h\\omega_c = {x}$" for x in (1.2, 1.8)
+        )
+        yield "by {} and by {}".format(*gain)
+        for words, scheme in (
+            ("with a restitution of", "trapezoidal rule"),
+            ("with full damping gave", "gen.-α, ρ = 0"),
+        ):
+            yield f"{words} {at[f'{scheme}, elastic Hertz, h / contact time = 1']:.2f}"
     if name == "shape":
         (factor,) = re.findall(r"factor of up to ([\d.]+)", " ".join(found["findings"]))
         yield f"differ by up to a factor of {factor}"
