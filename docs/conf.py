@@ -76,7 +76,7 @@ sphinx_gallery_conf = {
     "plot_gallery": os.environ.get("GALLERY", "1") == "1",
     "doc_module": ("beam", "contact"),
     "reference_url": {"beam": None, "contact": None},
-    "backreferences_dir": None,
+    "backreferences_dir": "examples/backreferences",
 }
 
 # what the pages take from the programs: the picture of the tour, and the page of all stored results
