@@ -1,12 +1,12 @@
 """A spring on an exciter: coupled modes of the spring and of the moving table that drives it.
 
-The table moves by z [m] on a suspension, with the whole moving mass m [kg], spring included. It is coupled
-to the modes of the spring on a fixed base, with frequencies omega and participations Gamma, by
+The table moves by z [m] on a suspension of frequency f_s [Hz], with the whole moving mass m [kg], spring
+included. With frequencies omega and participations Gamma of the spring on a fixed base,
 
-    M = [[1, Gamma], [Gamma^T, m]],     K = diag(omega^2, (2 pi f_s)^2 m),
+    M = [[1, Gamma], [Gamma^T, m]],     K = diag(omega^2, (2 pi f_s)^2 m).
 
-f_s [Hz] the frequency of the suspension. If mode 1 was measured on the exciter, omega_1 of the fixed base is
-computed such that the coupled mode has the measured frequency.
+If mode 1 was measured on the exciter, omega_1 of the fixed base is computed such that the coupled mode has
+the measured frequency (``docs/theory/beam.md``).
 """
 
 from collections.abc import Mapping

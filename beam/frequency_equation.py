@@ -1,11 +1,10 @@
 """Exact frequencies and shapes of the uniform straight beam, with a mass and a rotary inertia at its end.
 
-Euler-Bernoulli: EI w'''' = m omega^2 w, omega^2 = EI beta^4 / m, 0 <= s <= L. In the scaled basis
+Euler-Bernoulli: EI w'''' = m omega^2 w, omega^2 = EI beta^4 / m, 0 <= s <= L, in the scaled basis
 
-    w = a_1 cos(beta s) + a_2 sin(beta s) + a_3 exp(-beta s) + a_4 exp(-beta (L - s))
+    w = a_1 cos(beta s) + a_2 sin(beta s) + a_3 exp(-beta s) + a_4 exp(-beta (L - s)).
 
-every term is of order one in every mode (cosh and sinh lose all digits near mode 12). The supports at s = 0
-and at s = L give two rows each:
+The supports at s = 0 and at s = L give two rows each:
 
     clamped  w = w' = 0        pinned  w = w'' = 0        guided  w' = w''' = 0        free  w'' = w''' = 0
 
@@ -13,16 +12,10 @@ and a free end with tip mass M [kg] and rotary inertia J [kg m^2]
 
     EI w'' = J omega^2 w',     EI w''' = -M omega^2 w     at s = L.
 
-Each derivative is divided by beta, and these two rows by 1 + J beta^3/m and 1 + M beta/m. The determinant of
-the four rows is then a smooth function of beta L of order one. Its zeros are the frequencies, bracketed on a
-grid of step `SCAN_STEP` and refined by Brent's method. The shape is the null vector, mass-normalised,
-m int w^2 ds + M w(L)^2 + J w'(L)^2 = 1, with w(L) >= 0.
-
-For the clamped-free beam without tip the zeros satisfy cos(beta L) cosh(beta L) = -1 (R. D. Blevins, Formulas
-for Natural Frequency and Mode Shape, table 8-1). Over all modes of a clamped beam with the tip at its end:
-
-    sum phi_k^2/omega_k^2 = L^3/(3 EI),     sum Gamma_k phi_k / omega_k^2 = m L^4/(8 EI) + M L^3/(3 EI),
-    sum Gamma_k phi_k = 1,                  sum Gamma_k^2 = m L + M,           sum phi_k^2 = 1/M.
+Each derivative is divided by beta, and these two rows by 1 + J beta^3/m and 1 + M beta/m. The zeros of the
+determinant are bracketed on a grid of step `SCAN_STEP` and refined by Brent's method. The shape is the null
+vector, mass-normalised, m int w^2 ds + M w(L)^2 + J w'(L)^2 = 1, with w(L) >= 0. Derivation, and the sums
+over all modes: ``docs/theory/beam.md``.
 """
 
 import math

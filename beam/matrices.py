@@ -8,9 +8,8 @@ with b the unit rigid motion of the base along the drive. Shapes are normalised,
 
     phi = r^T X,   Gamma = X^T M b,   c_k = (X^T C X)_kk,   compliance r^T K^-1 r,   mass 1/(r^T M^-1 r).
 
-Rounding of K makes an error eps |x|^T |K| |x| of x^T K x: this part of omega^2 is uncertain. A motion whose
-energy is no larger has no strain, omega = 0. Sylvester's law of inertia says how many eigenvalues lie below
-the highest one found, so that none is missed.
+Rounding of K makes an error eps |x|^T |K| |x| of x^T K x; a motion whose energy is no larger has omega = 0.
+Sylvester's law of inertia says how many eigenvalues lie below the highest one found: none is missed.
 """
 
 from collections.abc import Mapping

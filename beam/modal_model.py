@@ -13,21 +13,14 @@ of the tip relative to the base [m], and
     phi_k    tip value of shape k in the drive direction               [kg^(-1/2)]
     Gamma_k  `participation` of shape k in a motion of the base         [kg^(1/2)]
 
-An impact depends on these four arrays only, each of shape (n_modes,). They may come from `natural_modes`, a
-formula, or a file of measured modes.
-
-Damping is modal: it does not couple the modes, which holds for light damping and separated frequencies (T. K.
-Caughey and M. E. J. O'Kelly, J. Appl. Mech. 32 (1965) 583).
-
-One mode is Eq. (1) of the letter: with unit mass, phi = Gamma = 1 and the damped period
-T = 2 pi / sqrt(omega^2 - (mu/2)^2) the equation above is xi'' + mu xi' + omega^2 xi = -z''.
-
-The modes are complete. A static tip force, an impulse on the tip and a translation of the base therefore give
+An impact depends on these four arrays only, each of shape (n_modes,). Damping is modal: it does not couple
+the modes. One mode with unit mass, phi = Gamma = 1 and the damped period T = 2 pi / sqrt(omega^2 - (mu/2)^2)
+is Eq. (1) of the letter, xi'' + mu xi' + omega^2 xi = -z''. The modes are complete, so that over all of them
 
     sum phi_k^2/omega_k^2 = C,   sum phi_k^2 = 1/M,   sum Gamma_k phi_k = 1
 
-over all modes, C the `static_compliance` [m/N] and M the lumped mass at the tip [kg]. A truncation to n modes
-makes the tip too stiff by the residual compliance C - sum_{k <= n} phi_k^2/omega_k^2, and too heavy likewise.
+with C the `static_compliance` [m/N] and M the lumped mass at the tip [kg]. Derivation:
+``docs/theory/beam.md``.
 """
 
 from __future__ import annotations

@@ -4,16 +4,12 @@ The eigenvalue problem K x = omega^2 M x, x^T M x = 1, is solved in the shifted 
 
     M x = mu (K + sigma M) x,   omega^2 = 1/mu - sigma,   sigma = min over pieces of EI / (m S^4) [1/s^2],
 
-S the length of the strip. K + sigma M is positive definite even when the supports leave a rigid motion. The
-lowest modes have the largest mu and therefore the smallest errors. (K itself spans twelve decades in omega^2,
-from the bending of the strip to the stretching of one element.)
-
-With e the drive direction and b the load of a unit base acceleration,
+S the length of the strip. With e the drive direction and b the load of a unit base acceleration,
 
     phi_k = tip displacement of x_k along e [kg^(-1/2)],     Gamma_k = b^T x_k [kg^(1/2)].
 
-A mode with phi = Gamma = 0 is uncoupled: neither the drive nor the stop can excite it. For the folded U
-driven sideways these are the breathing modes: the legs move against each other, the ball does not sideways.
+A mode with phi = Gamma = 0 is uncoupled, such as the breathing modes of a folded U driven sideways: the legs
+move against each other, the ball does not sideways. Derivation: ``docs/theory/beam.md``.
 """
 
 from dataclasses import dataclass

@@ -4,9 +4,6 @@ Plies i of width b, thickness t_i, moduli E_i and G_i, density rho_i and loss fa
 the normal coordinate y [m]. They are bonded: plane sections stay plane. With y_i the middle of a ply and
 
     ybar = sum E_i t_i y_i / sum E_i t_i                          (neutral axis [m])
-
-stretching and bending about the neutral axis do not couple, and
-
     EA = b sum E_i t_i                                            [N]
     EI = b sum E_i (t_i^3/12 + t_i (y_i - ybar)^2)                [N m^2]
     m  = b sum rho_i t_i                                          [kg/m]
@@ -14,16 +11,13 @@ stretching and bending about the neutral axis do not couple, and
 
 GJ is that of a thin laminate; kappa = 1 - (192 t / pi^5 b) sum_{n odd} tanh(n pi b / 2t)/n^5 is
 Saint-Venant's factor for the two edges, exact for one ply (S. P. Timoshenko and J. N. Goodier, Theory of
-Elasticity, art. 109).
-
-The loss factor of the section is the mean of eta_i, weighted by the strain energy of each ply. In bending
-this is the free-layer formula of H. Oberst, Akust. Beihefte 4 (1952) 181:
+Elasticity, art. 109). The loss factor is the mean of eta_i, weighted by strain energy (H. Oberst, Akust.
+Beihefte 4 (1952) 181):
 
     eta_bending = b sum eta_i E_i (t_i^3/12 + t_i (y_i - ybar)^2) / EI,
     eta_axial   = b sum eta_i E_i t_i / EA.
 
-The modulus is E, not E/(1 - nu^2): the strip is free to curl across its width. This holds while its radius of
-curvature exceeds about b^2/t.
+The modulus is E, not E/(1 - nu^2): the strip is free to curl across its width. See ``docs/theory/beam.md``.
 """
 
 from __future__ import annotations

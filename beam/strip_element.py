@@ -1,27 +1,18 @@
 """One piece of a thin strip, straight or an arc, by Euler-Bernoulli finite elements in the arc length.
 
-A point of the centreline moves by u t + w n relative to the base. With k the curvature, and t' = k n,
-n' = -k t,
+A point of the centreline moves by u t + w n relative to the base. With k the curvature,
 
-    stretch    u' - k w                             [1]
-    rotation   w' + k u                             [rad]
-    bending    (w' + k u)' = w'' + k u' on a piece  [1/m]
+    stretch u' - k w  [1],     rotation w' + k u  [rad],     bending w'' + k u' on a piece  [1/m],
 
 and virtual work for test functions (v, z) reads
 
     int EA (u' - k w)(v' - k z) + EI (w'' + k u')(z'' + k v') ds + int m (u.. v + w.. z) ds
         =  -z_base.. int m (e_t v + e_n z) ds,      e the drive direction.
 
-EA [N], EI [N m^2] and m [kg/m] belong to the section. Shear and the rotary inertia of the strip itself are
-left out.
-
-w is cubic Hermite. u is continuous of degree four, so that u' can cancel any cubic k w: thin arcs do not
-lock.
-
-Rounding: an entry of K is of the order EI/h^3, h the length of an element, and has an error of eps EI/h^3.
-The stiffness of the whole strip is only EI/L^3, so that x^T K x of a slow shape is accurate to (L/h)^4 eps.
-The strains of the shape are accurate to (L/h)^2 eps, and so is the energy summed from them
-(`PieceMesh.strain_energies`): 1e-12 where the matrix gives 1e-8.
+EA [N], EI [N m^2] and m [kg/m] belong to the section. w is cubic Hermite. u is continuous of degree four, so
+that u' can cancel any cubic k w: thin arcs do not lock. x^T K x of a slow shape is accurate to (L/h)^4 eps, h
+the length of an element and L of the strip, but the energy summed from strains (`PieceMesh.strain_energies`)
+to (L/h)^2 eps. Derivation: ``docs/theory/beam.md``.
 """
 
 from dataclasses import dataclass

@@ -4,23 +4,15 @@ Free vibration of mode 1, the first that moves the tip, at the tip amplitude A [
 
     f = f_0 (1 + kappa (A/L)^2 + ...),                                                            [Hz]
 
-L [m] the length of the first straight run from s = 0, or of the whole centreline if none is straight. The
-motion is mode 1, A y_1 cos(q) with y_1 of unit tip displacement, and the response A^2 (y_0 + y_2 cos(2 q)) of
-the whole strip at rest and at twice the frequency. The energy V of `finite_rotation` is taken to the fourth
-order, with V_4 and the second-order force g = dV_3/dy at y_1:
+L [m] the length of the first straight run from s = 0, or of the whole centreline if none is straight. With
+y_1 of unit tip displacement, V_4 the quartic part of the energy of `finite_rotation` there and g = dV_3/dy,
 
     K y_0 = -g/2,     (K - 4 W^2 M) y_2 = -g/2,     m = y_1^T M y_1,     W = 2 pi f_0,
-
-and with the averages over a period at order A^4
-
     V = (3/8) V_4 + g^T (y_0/2 + y_2/4) + (y_0^T K y_0 + y_2^T K y_2/2)/2,     T = W^2 y_2^T M y_2,
-
-the averaged Lagrangian of G. B. Whitham (Linear and Nonlinear Waves (1974), section 14) gives
-
     kappa/L^2 = 4 V/(m W^2)  [elastic]  - 4 T/(m W^2)  [inertial].
 
 One mode with (1 + a x^2) x'' + a x x'^2 + W^2 (x + b x^3) = 0 has kappa/L^2 = (3/8) b - a/4: its two parts
-are equal for b = (8/3) elastic/L^2 and a = -4 inertial/L^2.
+are equal for b = (8/3) elastic/L^2 and a = -4 inertial/L^2. Derivation: ``docs/theory/beam.md``.
 """
 
 from collections.abc import Sequence

@@ -5,17 +5,14 @@ With u, w [m] along tangent and normal of the centreline at rest, k its curvatur
     r' = (1 + a) t + b n,     a = u' - k w,     b = w' + k u,                                     [1]
 
 the stretch of the strip is e = |r'| - 1 and the rotation of its tangent the angle p, sin p = b/(1 + e). The
-strain energy of Euler-Bernoulli's strip, which has no shear, is
+strain energy of Euler-Bernoulli's strip, for rotations below a quarter turn, is
 
     V = int EA e^2/2 + EI p'^2/2 ds,     p' = b'/sqrt(1 - b^2).                                   [J]
 
-p' neglects e, a few parts in 1e5. The theory of thin strips leaves terms of this order open: whether a moment
-belongs to the curvature per length at rest or per stretched length. Rotations stay below a quarter turn.
-
-Supports, masses, the tip and its displacement are linear in u and w, as in small motions. Mesh, ties and M
-therefore come from ``beam.assembly``. A straight strip keeps u here, since its end comes nearer as it bends.
-
-Under a rigid rotation of any angle, e and p' vanish to rounding, also on arcs (b is the sine of the angle).
+p' neglects e. Supports, masses, the tip and its displacement are linear in u and w, as in small motions.
+Mesh, ties and M therefore come from ``beam.assembly``. A straight strip keeps u here, since its end comes
+nearer as it bends.
+See ``docs/theory/beam.md``.
 """
 
 from __future__ import annotations

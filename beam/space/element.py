@@ -6,8 +6,7 @@ moves by u t + w n + v z and rotates by phi about t, without shear:
     rotation   theta = phi t - v' n + (w' + k u) z                                     [rad]
     strains    theta' = (phi' + k v') t + (k phi - v'') n + (w'' + k u') z             [1/m]
 
-Motions in the plane (u, w: `beam.strip_element`) and out of it (v, phi) therefore do not couple. Out of the
-plane, with test functions (y, psi), v at the shear centre and the centroid at a n from there,
+Out of the plane, with test functions (y, psi), v at the shear centre and the centroid at a n from there,
 
     twist      tau = phi' + k v'       [1/m]      warping  tau' = phi'' + k v''        [1/m^2]
     bending    chi = v'' - k phi       [1/m]
@@ -17,10 +16,8 @@ plane, with test functions (y, psi), v at the shear centre and the centroid at a
 
 (V. Z. Vlasov, Thin-Walled Elastic Beams, ch. 2, for the straight piece; A. E. H. Love, A Treatise on the
 Mathematical Theory of Elasticity, art. 293, for the strains of the arc with EG = 0). Left out: shear, and the
-rotary inertia about n and z. An arc has no shear offset here.
-
-v and phi are cubic Hermite. Under chi = 0 a cubic v needs a linear phi, which a cubic contains. Strips that
-are stiff edgewise and tight arcs therefore do not lock.
+rotary inertia about n and z. An arc has no shear offset here. v and phi are cubic Hermite, which does not
+lock (``docs/theory/beam.md``).
 """
 
 from dataclasses import dataclass

@@ -9,34 +9,18 @@ is settled by one of
 
 R bounds the modes that are not sampled.
 
-The lowest mode alone, by Sturm's comparison theorem.  Relative to the stop the tip is at
+The lowest mode alone.  Relative to the stop the tip is at y = -G + A cos(w (t - t_p)) + phi u(t) + R(t), |R|
+<= r, u the free deviation of the lowest mode.  With rho = |phi| sqrt(u^2 + (v/omega)^2) at the start, let
 
-    y(t) = -G + A cos(w (t - t_p)) + phi u(t) + R(t),      |R| <= r,
+    d = (|w^2 - omega^2| + c omega) rho/w^2,    K = G - d - r - margin,    z = y - R + G - d.
 
-where G is the distance of the stop from the tip's mean position, and A and t_p are height and time of the
-steady peak.  u is the free deviation of the lowest mode and R that of all others; the sum r of their
-amplitudes bounds R (``contact.flight.modal_flow``).  Let rho = |phi| sqrt(u^2 + (v/omega)^2) at the start of
-the flight.  From then on
-
-    y'' - R'' + w^2 (y - R + G) = phi (u'' + w^2 u) <= w^2 d,     d = (|w^2 - omega^2| + c omega) rho/w^2,
-
-because u'' = -c u' - omega^2 u, |phi u| <= rho and |phi u'| <= omega rho.  Hence z = y - R + G - d obeys
-z'' + w^2 z <= 0.  It lies below the harmonic motion that has its height z_1 and slope z_1' at any t_1 of the
-flight, since the difference is an integral of sin(w (t - s)) >= 0 times a function that is never positive:
-
-    z(t) <= z_1 cos(w (t - t_1)) + (z_1'/w) sin(w (t - t_1)),      |t - t_1| <= pi/w.                  (1)
-
-With m the margin for rounding, the tip stays off the stop wherever z < K = G - d - r - m, and also where
-cos(w (t - t_p)) <= 0 if rho + r + m < G.  Take a span of the flight within 3 P/4 of t_p, P the drive
-period, let |t_1 - t_p| be at most P/4, and |z_1| < K > 0.  Times more than P/2 from t_1, where (1) does not
-hold, then have cos(w (t - t_p)) <= 0, and the bound in (1) stays below |z_1| on one side:
+Let P be the drive period, the span within 3 P/4 of t_p, |t_1 - t_p| <= P/4, rho + r + margin < G and |z_1| <
+K.  By Sturm's comparison theorem the height z_1 and slope z_1' at t_1 then prove
 
     z_1' <= 0: no touch after t_1;      z_1' >= 0: none before;      z_1^2 + (z_1'/w)^2 < K^2: none at all.
 
-The first also holds for any later t_1, the second for any earlier one.  The motion at t_p, or at the peak
-next to it, so settles a flight without a touch; a flight with one is settled up to just before y - R first
-comes within r of the stop.  A flight through a whole period whose t_p lies outside the middle half is taken
-as two spans of P/2.
+The first also holds for any later t_1, the second for any earlier one.  Derivation:
+``docs/theory/crossing.md``.
 """
 
 import math

@@ -1,13 +1,10 @@
 """The first crossing of the stop, certified.
 
-Starting where the tip is off the stop, time is skipped only if a bound proves the span free.
-``contact.flight.bounds`` has this proof and the two that end a search: one root, one peak.  High modes are
-bounded instead of sampled (``contact.flight.tip``), and more are sampled as the gap closes.  Often a bound of
-the lowest mode alone proves a whole flight free, or the time up to just before a touch, or the rest of a
-period after one.
-
-A graze, |peak| within the rounding bound of y (at most 1e-13 of the gap), is an outcome of its own.  A
-span that no proof settles, with h down to rounding, is reported as unresolved and never passed.
+Starting where the tip is off the stop, time is skipped only if a bound proves the span free
+(``contact.flight.bounds``).  High modes are bounded instead of sampled, and more are sampled as the gap
+closes.  A graze, |peak| within the rounding bound of y (at most 1e-13 of the gap), is an outcome of its own.
+A span that no proof settles, with h down to rounding, is reported as unresolved and never passed.
+Derivation: ``docs/theory/crossing.md``.
 """
 
 import math

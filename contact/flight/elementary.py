@@ -1,10 +1,9 @@
 """Sine, cosine and exponential to one unit in the last place, and products without rounding error.
 
 The inlined functions neither branch nor call the system's library, so that a loop over many modes compiles to
-vector instructions.  A phase is an unevaluated sum of two doubles; its rounding error stays below that of the
-result even after 1e5 rad.  Sine and cosine are Taylor sums on |x| <= pi/4 after one reduction by multiples of
-pi/2, whose leading 33 bits make the product exact (W. J. Cody and W. Waite, Software Manual for the
-Elementary Functions, Prentice-Hall 1980).  The exponential is computed in the same way on |x| <= ln 2/2.
+vector instructions.  A phase is an unevaluated sum of two doubles.  Sine and cosine are Taylor sums on |x| <=
+pi/4 after one reduction by multiples of pi/2, whose leading 33 bits make the product exact (W. J. Cody and W.
+Waite, Software Manual for the Elementary Functions, Prentice-Hall 1980); exp is one on |x| <= ln 2/2.
 """
 
 import math

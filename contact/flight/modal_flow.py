@@ -1,21 +1,16 @@
 """The motion of the modes between contacts, in closed form.
 
-Each mode obeys q'' + c q' + omega^2 q = g + Gamma Z w^2 sin(w t) (mass-normalised, w = 2 pi f).  Write
-q = q_s(t) + u with the steady motion
+Each mode obeys q'' + c q' + omega^2 q = g + Gamma Z w^2 sin(w t), w = 2 pi f [SI, u in m kg^0.5].  With the
+steady motion q = q_s(t) + u,
 
-    q_s(t) = g/omega^2 + S sin(w t) + C cos(w t),   S + iC = Gamma Z w^2 / (omega^2 - w^2 + i c w)
+    q_s(t) = g/omega^2 + S sin(w t) + C cos(w t),   S + iC = Gamma Z w^2 / (omega^2 - w^2 + i c w),
+    u(t) = e^{-ct/2} [ Cn(t) u_0 + Sn(t) (v_0 + c u_0/2) ],
+    v(t) = e^{-ct/2} [ Cn(t) v_0 - Sn(t) (omega^2 u_0 + c v_0/2) ],
 
-(the g-term only for omega > 0).  The deviation u is free, u'' + c u' + omega^2 u = 0, and with D = omega^2 -
-(c/2)^2
-
-    u(t) = e^{-ct/2} [ Cn(t) u_0 + Sn(t) (v_0 + c u_0/2) ]
-    v(t) = e^{-ct/2} [ Cn(t) v_0 - Sn(t) (omega^2 u_0 + c v_0/2) ]
-
-where (Cn, Sn) is (cos, sin/d) of d t with d = sqrt(D) for an under-damped mode, (1, t) for a critical one and
-(cosh, sinh/k) of k t with k = sqrt(-D) for an over-damped one.  A mode of zero frequency under a constant
-load g adds g t^2 phi_2(-c t) to u, phi_2(x) = (e^x - 1 - x)/x^2.  The phase d t is a sum of two doubles.
-
-Units: SI with mass-normalised modes (u in m kg^0.5).
+the g-term only for omega > 0.  With D = omega^2 - (c/2)^2, (Cn, Sn) is (cos, sin/d) of d t, d = sqrt(D), for
+an under-damped mode, (1, t) for a critical one and (cosh, sinh/k) of k t, k = sqrt(-D), for an over-damped
+one.  A mode of zero frequency under a constant load g adds g t^2 phi_2(-c t) to u, phi_2(x) = (e^x - 1 -
+x)/x^2.  The phase d t is a sum of two doubles.  Derivation: ``docs/theory/flight.md``.
 """
 
 import math

@@ -1,15 +1,9 @@
 """The first crossing of the stop by the letter's search: at a few instants of each drive period.
 
-The letter (1996, note [11]) computes the exact position at t_1, ..., t_k in each drive period.  It detects
-crossings "both directly", where a sampled position is beyond the stop, and at the turning points of the
-motion, where the sampled velocities change from rising to falling.  Here t_j = j / (k f), and a flight that
-begins in between starts with a shorter interval.  A detected crossing is located to rounding on the exact
-flow, by Newton's method within the bracket (``contact.flight.tip_search``).
-
-The search misses a crossing if the tip returns within the interval and turns an even number of times there.
-For the ringing of a mode of frequency omega this is likely once the spacing exceeds half its period, k <
-omega / (pi f).  Turning points of a sum of modes can lie arbitrarily close together, so that no k excludes
-it.  If several crossings lie in one interval, the located one need not be the first.
+The letter (1996, note [11]) computes the exact position at t_j = j / (k f), k times in each drive period.  It
+detects a crossing where a sampled position is beyond the stop, and at the turning points of the motion, where
+the sampled velocities change from rising to falling.  A flight that begins in between starts with a shorter
+interval.  What the search misses: ``docs/theory/crossing.md``.
 """
 
 import math

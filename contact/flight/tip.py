@@ -2,10 +2,8 @@
 
     y = static displacement - gap + steady motion + sum phi_k u_k,
 
-positive behind the stop, with the deviations u_k of ``contact.flight.modal_flow``.
-
-Bounds: every derivative of a free mode obeys the same equation, and v^2 + omega^2 u^2 never grows, hence for
-all later times, whatever the damping,
+positive behind the stop, with the deviations u_k of ``contact.flight.modal_flow``.  Free modes obey, for all
+later times (``docs/theory/crossing.md``),
 
     |u^(n)|   <= sqrt( (u^(n))^2 + (u^(n+1)/omega)^2 ) now,
     |u^(n+1)| <= sqrt( (u^(n+1))^2 + omega^2 (u^(n))^2 ) now.

@@ -1,8 +1,8 @@
 """The tip during a flight, its root and its peak in a bracket, and all its peaks.
 
 Root and peak are found on the exact flow by Newton's method within the bracket; for a root the parabola
-through a point replaces the tangent.  With a bound M of the third derivative the last step needs no check: a
-step of length x ends within M x^3/6 of the height sought, or with y' within M x^2/2 of zero.
+through a point replaces the tangent.  With |y'''| <= M a last step of length x ends within M x^3/6 of the
+height sought, or with y' within M x^2/2 of zero.
 """
 
 import math

@@ -5,32 +5,25 @@ autonomous flow of e = (u, v, S, C), 2 N + 2 numbers, and the tip is at
 
     y(e) = phi . u + a S + b C + level,      a + i b the tip response per unit base amplitude.
 
-A tangent d = de(t)/de(0) is a column of a (2 N + 2) x (2 N + 2) matrix.  In the variable s of the law's
-series
+A tangent d = de(t)/de(0) is a column of a matrix.  In the variable s of the law's series, r = dt/ds,
 
-    du = r v,   dv = r (-c v - omega^2 u) - phi (r N_d y(d) + r N_d' y'(d)),   dS = r w C,   dC = -r w S
+    du = r v,   dv = r (-c v - omega^2 u) - phi (r N_d y(d) + r N_d' y'(d)),   dS = r w C,   dC = -r w S.
 
-with r = dt/ds.  The sums over earlier orders, sum_j r_(n-j) x_j, belong to the motion itself.  A law
-therefore only has to give the series of r, r N_d and r N_d' (`slopes`).
-
-The last columns of a matrix may belong to parameters p, each a direction in which the numbers of the
-oscillator change (``contact.sensitivity.change``).  These columns have sources besides.  With a dot for the
-derivative of a number, and with (u, v, S, C) the motion itself,
+The sums over earlier orders, sum_j r_(n-j) x_j, belong to the motion itself.  A law therefore only has to
+give the series of r, r N_d and r N_d' (`slopes`).  The last columns may belong to parameters
+(``contact.sensitivity.change``).  With a dot for the derivative of a number, their sources are
 
     y(d)  + level. + a. S + b. C + phi. . u,      y'(d)  + w. (a C - b S) + w (a. C - b. S) + phi. . v,
     dv  - r ((omega^2). u + c. v) - phi. r N - phi (r N)_1 n_1. - phi (r N)_2 n_2.,
     dS  + r w. C,   dC  - r w. S,
 
-where n_1, n_2 are the two numbers of the law.
+where n_1, n_2 are the two numbers of the law.  With half = c/2, D = omega^2 - half^2 and cn, sn as in
+``contact.flight.modal_flow`` (damping included), the flow of a free mode is (cn + half sn, sn; -omega^2 sn,
+cn - half sn), and its derivatives follow from d exp(-half t)/dc = -t/2 exp(-half t) and
 
-The flow of a free mode depends on its numbers.  With half = c/2, D = omega^2 - half^2 and cn, sn as in
-``contact.flight.modal_flow`` (damping included) it is (cn + half sn, sn; -omega^2 sn, cn - half sn), and
+    d cn/dD = -t sn/2,      d sn/dD = (t cn - sn)/(2 D),      dD/d(omega^2) = 1,      dD/dc = -half.
 
-    d cn/dD = -t sn/2,      d sn/dD = (t cn - sn)/(2 D),      dD/d(omega^2) = 1,      dD/dc = -half,
-
-while d exp(-half t)/dc = -t/2 exp(-half t).  Where D t^2 is small, d sn/dD is the series
-
-    e^(-half t) t^3 sum_k (-1)^k (D t^2)^(k-1) k/(2k + 1)!,      k = 1, 2, ...
+Derivation: ``docs/theory/flight.md``.
 """
 
 import math
@@ -45,7 +38,9 @@ from contact.machine.compiled import kernel, part
 LEVEL, TIP_SINE, TIP_COSINE, DRIVE, NUMBER0, NUMBER1 = range(6)
 """Columns of `Variation.scalars`: the derivatives of level, a, b, w, n_1 and n_2."""
 
-TERMS = 10  # terms of the series for |D t^2| < 1: the next one is below 1e-19 of the first
+TERMS = 10
+"""Terms of d sn/dD = e^(-half t) t^3 sum_k (-1)^k (D t^2)^(k-1) k/(2k + 1)!, k = 1, 2, ..., for |D t^2| < 1:
+the next one is below 1e-19 of the first."""
 TINY = 1e-300  # replaces |a + i b| where the drive does not move the tip
 
 

@@ -1,9 +1,8 @@
 """Parameters of an impact oscillator, each a direction in which its numbers change.
 
 A `Change` holds the derivatives of the oscillator's numbers with respect to one parameter p, written with a
-dot.  A motion depends on p through omega_k^2, c_k, phi_k, the level -gap, the drive frequency w and the
-numbers of the law.  By the chain rule it also depends on p through the steady motion
-(``contact.oscillator``)
+dot: of omega_k, c_k, phi_k, Gamma_k, the gap, the drive frequency w and the numbers of the law.  The steady
+motion (``contact.steady_response``) changes by
 
     H_k = Gamma_k w^2/E_k,      E_k = omega_k^2 - w^2 + i c_k w,
     H_k. = (Gamma_k. w^2 + 2 Gamma_k w w. - H_k (2 omega_k omega_k. - 2 w w. + i (c_k. w + c_k w.)))/E_k,

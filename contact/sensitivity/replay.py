@@ -1,8 +1,7 @@
 """The variational replay: a simulated motion once more, with its tangents from touch to touch.
 
-The touches are taken from the simulation.  The tangents go through flights with the flows of the modes, and
-through touches with the tangents of the law (``contact.flight.variation``).  The time of a touch changes by
--y(d)/v along a tangent d, v its approach velocity.  At a graze v is zero, and the motion has no derivative.
+The touches are taken from the simulation.  The time of a touch changes by -y(d)/v along a tangent d, v its
+approach velocity.  At a graze v is zero, and the motion has no derivative.  See ``docs/theory/flight.md``.
 """
 
 import math

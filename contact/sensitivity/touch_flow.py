@@ -2,9 +2,8 @@
 
 The flow starts at a touch, y = 0, and runs through a given number of contacts.  After the last one it goes on
 freely to the end of m drive periods, the wall ignored.  It is therefore smooth in the start through grazing,
-where the strobe map has its square root.  Amplitude and phase of the drive are ordinary initial values
-(``contact.flight.variation``).  Tangents go through flights with the flows of the modes, through contacts
-with their series, and through instantaneous impacts by saltation matrices.
+where the strobe map has its square root.  Tangents (``contact.flight.variation``) go through contacts with
+their series, and through instantaneous impacts by saltation matrices.
 """
 
 import numpy as np
