@@ -8,7 +8,8 @@ displacement relative to the stop, y' its velocity, and p the numbers of the osc
     F_(u,v)(z, p) - (u, v) = 0,      y(z, p) = 0,                                                         (1)
 
 and one more equation, y' = s (given approach speed) or S^2 + C^2 = Z^2 (given amplitude).  All functions are
-smooth through a fold and down to grazing (see also arXiv:2510.16218).  The Floquet multipliers are the eigenvalues of dF_(u,v)/d(u, v) at fixed drive.  Derivation: ``docs/theory/orbits.md``.
+smooth through a fold and down to grazing (see also arXiv:2510.16218).  The Floquet multipliers are
+the eigenvalues of dF_(u,v)/d(u, v) at fixed drive.  Derivation: ``docs/theory/orbits.md``.
 """
 
 import math

@@ -14,7 +14,8 @@ S^2 and correlation R of neighbours, and pass the stop h above their mean at the
 2 T(h/S, sqrt((1 - R)/(1 + R))), T Owen's function.
 
 With a drift the density of e is carried along the whole scan by its Fokker-Planck equation with an absorbing
-end, exactly in time: steps remember each other.  What ends in the second half of a waiting counts for the next step, as in the scans.  Derivation: ``docs/theory/noise.md``.
+end, exactly in time: steps remember each other.  What ends in the second half of a waiting counts for the
+next step, as in the scans.  Derivation: ``docs/theory/noise.md``.
 """
 
 import math
