@@ -1,15 +1,14 @@
 """Collisions: impacts grouped as the single-mode description sees them.
 
-The letter (1996) describes a spring with many modes by one mode, a restitution tau and a time delay.  Its
-virtual motion is the steady forced tip motion plus the free deviation of mode 1, the wall ignored:
+The virtual motion is the steady forced tip motion plus the free deviation of mode 1, the wall ignored:
 
     y(t) = x_s(t) + phi_1 u_1(t) - gap
 
-Mode 1 is the mode that carries most of a static force on the tip (``ModalModel.leading_mode``).  The incoming
-virtual motion is that before a collision, the outgoing one that after it; the free flow of mode 1 continues
-each both ways.  A collision holds all impacts from a first touch until the next minimum of the outgoing
-virtual motion, and is final when that minimum has passed.  ``contact.collision_numbers`` measures its
-restitution, time delay and kick.
+Mode 1 carries most of a static force on the tip (``ModalModel.leading_mode``).  A collision holds all impacts
+from a first touch until the next minimum of the outgoing virtual motion, that after the last impact.  It is
+final when that minimum has passed.
+
+Derivation: ``docs/theory/collision.md``.
 """
 
 import math

@@ -8,14 +8,11 @@ With the incoming and the outgoing virtual motion of ``contact.collision``,
     restitution = -(velocity at t_out) / v_in,   delay = t_out - t_in,
     kick = -(jump of the mode-1 tip velocity) / v_in,   shift = jump of the mode-1 tip displacement,
 
-both jumps referred to t_in by the free flow of mode 1.  To leading order in v_in, with a the deceleration of
-the tip,
+both jumps referred to t_in by the free flow of mode 1.
 
-    restitution^2 = (1 - kick)^2 + 2 a shift / v_in^2,   delay = (v_in / a)(1 + restitution - kick).
-
-If the incoming peak stays below the gap, the ringing of higher modes made the touch (`forced_by_ringing`).
-Restitution and delay do not exist then, and the kick is given as a velocity.  If the outgoing motion never
-reaches the gap, restitution and delay do not exist either, but the kick does.
+If the incoming peak stays below the gap (`forced_by_ringing`), the kick is given as a velocity.  Restitution
+and delay do not exist then, nor if the outgoing motion never reaches the gap.  ``docs/theory/collision.md``
+derives the relation of the two pairs.
 """
 
 import math

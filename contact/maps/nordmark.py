@@ -1,4 +1,4 @@
-r"""Nordmark's map: the strobed motion of an impact oscillator close to grazing.
+"""Nordmark's map: the strobed motion of an impact oscillator close to grazing.
 
     x' = alpha x + y + rho,          y' = -gamma x          for x <= 0   (no impact)        letter Eq. (2)
     x' = -sqrt(x) + d + y + rho,     y' = -gamma_impact x   for x > 0    (one impact)       letter Eq. (3)
@@ -9,17 +9,12 @@ One step is one drive period 1/f. All quantities of the map are pure numbers:
     y       contribution of the previous peak to the next one
     rho     distance of the drive from grazing, the control parameter
     alpha, gamma    trace and determinant of the free flow M over one drive period
+    gamma_impact    gamma tau^2 with `y_line="corrected"`, gamma with `y_line="printed"` as in the letter
     tau     restitution: speed after the impact / speed before it
     d       constant delay at the wall, zero in the letter
 
-``contact.maps.nordmark_coefficients`` derives them from a mode, its drive and its restitution.
-
-The letter's Eqs. (2), (3) print y' = -gamma x once, for both branches. The determinant of the impacting
-branch must be that of one period with an impact, gamma tau^2 (two factors -tau from the saltation at the
-wall): hence gamma_impact = gamma tau^2, `y_line="corrected"`. `y_line="printed"` keeps gamma_impact = gamma.
-
 Sources: letter of 1996, Eqs. (2), (3); A. B. Nordmark, J. Sound Vib. 145 (1991) 279; W. Chin, E. Ott,
-H. E. Nusse, C. Grebogi, Phys. Rev. E 50 (1994) 4427.
+H. E. Nusse, C. Grebogi, Phys. Rev. E 50 (1994) 4427.  Derivation: ``docs/theory/map.md``.
 """
 
 from __future__ import annotations

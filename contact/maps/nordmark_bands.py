@@ -1,16 +1,13 @@
 """Frequency bands of Nordmark's map, in which p_m appears at grazing.
 
-As rho -> 0- without delay, the orbit p_m of one impact (``contact.maps.nordmark_orbits``) is admissible for
-theta between
+As rho -> 0- without delay, p_m with one impact is admissible for theta = 2 pi/(f T) - 2 pi j between
 
-    upper frequency   theta = pi/m, hence f = 2m/((2m j + 1) T): b = 0, no hysteresis, at any damping and tau
+    upper frequency   theta = pi/m, hence f = 2m/((2m j + 1) T): no hysteresis, at any damping and tau
     lower frequency   sin((m-1) theta)/sin(theta) = -(gamma_impact/gamma) gamma^(m/2): x_{m-1} = 0
 
-with theta = 2 pi/(f T) - 2 pi j and j = 1 in the letter (`whole_turns`); for m = 2 the lower end is at pi.
-Neighbouring bands overlap slightly, which is the coexistence noted under Fig. 3 of the letter. These bands
-belong to an oscillating mode. An overdamped one has b > 0; its orbits with one impact exist for rho > 0 only.
+with j = 1 in the letter (`whole_turns`); for m = 2 the lower end is at pi.  The mode must oscillate.
 
-Source: letter of 1996, Fig. 3 and text.
+Source: letter of 1996, Fig. 3 and text.  Derivation: ``docs/theory/map.md``.
 """
 
 import math

@@ -1,24 +1,17 @@
-r"""The coefficients of Nordmark's map, from one mode, its drive and its restitution.
+"""The coefficients of Nordmark's map, from one mode, its drive and its restitution.
 
-The deviation u from the steady motion obeys u'' + c u' + omega_1^2 u = 0, with flow M over 1/f. With the peak
-phase as strobe phase, an overshoot h meets the wall at speed v = sqrt(2 a h), where a = (2 pi f)^2 gap, and
-Newton's law changes the velocity at that phase by -(1 + tau) v to leading order. The height of the next peak
-changes by -M12 (1 + tau) v, so the scale at which the root has coefficient one is 2 a M12^2 (1 + tau)^2.
-Eliminating the velocity from two successive steps gives
+With the free flow M of u'' + c u' + omega_1^2 u = 0 over 1/f, and omega_d^2 = omega_1^2 - c^2/4,
 
-    alpha = tr M = exp(-c/2f) 2 cos(omega_d/f),    omega_d^2 = omega_1^2 - c^2/4 > 0  (2 cosh(kappa/f) if < 0)
+    alpha = tr M = exp(-c/2f) 2 cos(omega_d/f)      (2 cosh(kappa/f) if omega_d^2 = -kappa^2 < 0)
     gamma = det M = exp(-c/f)
     rho   = (F/F_g - 1) (1 - alpha + gamma) / (2 (2 pi f M12)^2 (1 + tau)^2)
+    d     = delay / (2 M12 (1 + tau)^2)
 
 For an underdamped mode of free period T = 2 pi/omega_d, (2 pi f M12)^2 = gamma (f T)^2 sin^2(2 pi/(f T)).
-A kick that comes `delay` seconds late is (1 + tau) v - a delay, hence d = delay / (2 M12 (1 + tau)^2).
-The sign of the root is that of M12: Eq. (3) is the case M12 > 0, for an underdamped mode a fractional part of
-1/(f T) below one half (2/3 < f T < 1 in the letter).
+Eq. (3) is the case M12 > 0.
 
-In the letter the bracket in rho is broken, "(1 + tau^2 sin^2(2 pi/fT)"; it must read
-(1 + tau)^2 sin^2(2 pi/(f T)). The "rho = F/F_g - 1" under its Fig. 4 is not this rho, but `excess` here.
-
-Sources: letter of 1996, Eqs. (1) to (3); A. B. Nordmark, J. Sound Vib. 145 (1991) 279.
+Sources: letter of 1996, Eqs. (1) to (3), its bracket in rho corrected; A. B. Nordmark, J. Sound Vib. 145
+(1991) 279.  Derivation: ``docs/theory/map.md``.
 """
 
 import math

@@ -1,13 +1,10 @@
-r"""Maximal orbits of Nordmark's map: one impact every m drive periods, in closed form.
+"""Maximal orbits of Nordmark's map: one impact every m drive periods, in closed form.
 
-Without impacts the height obeys x_{n+1} = alpha x_n - gamma x_{n-1} + rho. Its response to a unit impulse is
+Without impacts the height obeys x_{n+1} = alpha x_n - gamma x_{n-1} + rho. Its response to a unit impulse,
+and that to an impulse repeated every m steps, are
 
-    p_0 = 1,  p_k = alpha p_{k-1} - gamma p_{k-2}    (= gamma^(k/2) sin((k+1) theta)/sin(theta), underdamped)
-
-and its response to an impulse repeated every m steps
-
-    G_k = (p_k + gamma^(k+1) p_{m-k-2}) / D,   k = 0 ... m-1 (mod m),   p_{-1} = 0,
-    D = 1 - (p_m - gamma p_{m-2}) + gamma^m    (= 1 - 2 g cos(m theta) + g^2,  g = gamma^(m/2)).
+    p_{-1} = 0,  p_0 = 1,  p_k = alpha p_{k-1} - gamma p_{k-2},
+    G_k = (p_k + gamma^(k+1) p_{m-k-2}) / D,  k = 0 ... m-1 (mod m),  D = 1 - (p_m - gamma p_{m-2}) + gamma^m.
 
 An impact at x_0 = X^2 > 0 adds u_1 = d - X - alpha X^2 to x_1 and u_2 = (gamma - gamma_impact) X^2 to x_2:
 
@@ -15,13 +12,11 @@ An impact at x_0 = X^2 > 0 adds u_1 = d - X - alpha X^2 to x_1 and u_2 = (gamma 
     k = 0:   a X^2 + b X = c rho + b d,   b = G_{m-1},   a = 1 + alpha b - (gamma - gamma_impact) G_{m-2}.
 
 For b < 0 < a a node (larger X) and a saddle meet in a **fold**, X = -b/(2a), rho_m = -b^2/(4 a c) - b d/c.
-Multipliers: determinant gamma^(m-1) gamma_impact, trace -p_{m-1}/(2X) - (gamma_impact + gamma) p_{m-2};
-stable if |trace| < 1 + determinant. An orbit is *admissible* (an orbit of the map) if x_1 ... x_{m-1} <= 0;
-when one of them reaches zero a **second impact** ends it. With (a) each x_k is a quadratic in X, so these
-ends are in closed form too.
+Multipliers: determinant gamma^(m-1) gamma_impact, trace -p_{m-1}/(2X) - (gamma_impact + gamma) p_{m-2}.
+An orbit is *admissible* if x_1 ... x_{m-1} <= 0; a **second impact** ends it.
 
 Sources: letter of 1996, Fig. 3 and text; W. Chin, E. Ott, H. E. Nusse, C. Grebogi, Phys. Rev. E 50 (1994)
-4427. The formulae hold for either reading of the y-line; all quantities are pure numbers save f and T.
+4427.  Derivation: ``docs/theory/map.md``.
 """
 
 import math

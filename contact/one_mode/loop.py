@@ -2,30 +2,24 @@
 
 Relative to the stop the tip is at y(t) = -G + A cos(w (t - t_p)) + u(t), as in ``contact.flight.bounds`` with
 phi = 1 and without other modes.  From strobe to strobe (u, u') is multiplied by the constant flow of a
-period, if y stays below zero meanwhile.  The proof is the comparison of that file, with its rho and d at the
-strobe, the margin m for rounding and z = y + G - d.  By its bound (1), for |t - t_1| <= pi/w,
+period, if y stays below zero meanwhile.  With the rho and d of that file at the strobe, the margin m for
+rounding and z = y + G - d, let rho + m < G and d + m < G, and t_p lie in the middle half of the period (below
+resonance it does, unless the mode's sign puts it at the strobe).
 
-    z(t) <= sqrt(z_1^2 + (z_1'/w)^2),
-
-and y <= rho - G where cos(w (t - t_p)) <= 0.  Let rho + m < G and d + m < G, and t_p lie in the middle half
-of the period (below resonance it does, unless the mode's sign puts it at the strobe).
-
-* For a t_1 within a quarter of a period of t_p both together cover the period: there is no crossing if
+* There is no crossing if at a t_1 within a quarter of a period of t_p
 
       z_1^2 + (z_1'/w)^2 < (G - d - m)^2.                                                              (*)
 
   At t_1 = t_p these are z_1 = A + p - d and z_1' = q, (p, q) = (u, u') there, each two products with
   constants: this proof needs no sine.  If it fails, (*) may hold for a t_1 near the peak.
-* A zero of y lies within a quarter of a period of t_p.  If y' > 0 there, (1) with t_1 at the zero shows y < 0
-  all the time before it: it is the first crossing, whichever way it was found.  It is one beyond rounding if
-  the peak that its slope must reach, y'^2/(2 max|y''|), exceeds m.  ``one_impact`` finds nearly all crossings
-  in one evaluation and checks them; an iteration (`rising_zero`) finds the others, in a period that takes
-  1.3 to 1.8 times as long.
-* After an impact (1) with z_1 = G - d > 0 and z_1' <= 0 shows y < 0 for the rest of the period, with the rho
-  and d from then on; and y'' <= -w^2 z_1 < 0, so that impacts do not accumulate.
+* A zero of y with y' > 0 is the first crossing.  It is one beyond rounding if y'^2/(2 max|y''|) exceeds m.
+  ``one_impact`` finds nearly all crossings in one evaluation and checks them; an iteration (`rising_zero`)
+  finds the others.
+* After an impact y stays below zero for the rest of the period, with the rho and d from then on.
 
 ``event_loop.advance`` takes every period that remains undecided: within rounding of a graze, with a stay on
 the wall or several impacts, and with large deviations (from about twice the grazing amplitude on).
+Derivation: ``docs/theory/orbits.md``.
 """
 
 import math

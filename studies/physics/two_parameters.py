@@ -4,18 +4,11 @@
                                        the approach speed of mode 1 (`contact.first_collision`)
 
 at excesses from 1e-6 to 0.3, between which tau and d/v are interpolated in ln v. They make the rebound law of
-Eq. (1) (`contact.DelayedRestitution`), so that energy loss and time delay replace the higher modes, as the
-letter claims; what they leave out is the ringing that the next collision meets.
+Eq. (1) (`contact.DelayedRestitution`); what they leave out is the ringing that the next collision meets.
 
-Below the slowest collision tau and d/v keep their values. There d < 2 v/a, a the deceleration of the tip, so
-that no touch holds the tip longer than it would be behind the wall without one: none glues it. Above the
-fastest tau and d keep theirs. A collision after which mode 1 does not come back to the gap has neither; it is
-left out of the tables, and the law runs on between its neighbours. None is made by ringing, as there is none
-before a first collision.
-
-Restitution and delay, or kick and shift of mode 1, are the same at the deceleration of the first collision;
-on an orbit the tip decelerates otherwise by the part that its free motion has of the gap. By simulation with
-the former the orbits end within 0.5 % of where they end by the kicks (6 % of 4.7e-7 at 22.60 Hz).
+Below the slowest collision tau and d/v keep their values, with d < 2 v/a, a the deceleration of the tip.
+Above the fastest tau and d keep theirs. A collision after which mode 1 does not come back to the gap has
+neither, and is left out of the tables. See ``docs/theory/collision.md``.
 """
 
 from collections.abc import Callable

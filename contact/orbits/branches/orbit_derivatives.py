@@ -1,10 +1,9 @@
-r"""Derivatives of a periodic orbit with respect to the numbers of its oscillator.
+"""Derivatives of a periodic orbit with respect to the numbers of its oscillator.
 
-An orbit of m drive periods starts at its first touch from z = (u, v, S, C) and obeys the equations of
-``contact.orbits.families.equations``, smooth in z and in every parameter p.  The derivative dz/dp is one
-linear solve, with the tangents of one more flow.  At given amplitude Z it belongs to the orbit that one
-observes, and ends at a fold.  At given approach speed s it goes on there.  The derivative of the excess then
-does not depend on s: it is the derivative of the fold itself.
+An orbit starts at its first touch from z = (u, v, S, C) and obeys the equations of
+``contact.orbits.families.equations``.  The derivative dz/dp is one linear solve, with the tangents of one
+more flow.  At given amplitude it ends at a fold; at given approach speed the derivative of the excess is that
+of the fold itself.  Derivation: ``docs/theory/folds.md``.
 """
 
 from collections.abc import Sequence

@@ -1,19 +1,15 @@
-r"""The equations of a periodic orbit and their derivatives.
+"""The equations of a periodic orbit and their derivatives.
 
 An orbit of m drive periods starts at its first touch from z = (u, v, S, C).  Here u and v are the deviations
 of all N modes from the steady motion, and S = Z sin(w t), C = Z cos(w t) give the amplitude and the phase of
 the drive.  F is the flow over m/f from touch to touch (``contact.sensitivity.touch_flow``).  With y the tip
 displacement relative to the stop, y' its velocity, and p the numbers of the oscillator, the orbit obeys
 
-    F_(u,v)(z, p) - (u, v) = 0,      y(z, p) = 0.                                                         (1)
+    F_(u,v)(z, p) - (u, v) = 0,      y(z, p) = 0,                                                         (1)
 
-One more equation picks an orbit of the family,
-
-    y'(z, p) = s  (given approach speed)      or      S^2 + C^2 = Z^2  (given amplitude).
-
-All functions are smooth in z and p, through a fold and down to grazing.  The strobe map has a square root
-there: see also arXiv:2510.16218.  The derivatives are the exact tangents of the flow, so that Newton's method
-converges quadratically.  The Floquet multipliers are the eigenvalues of dF_(u,v)/d(u, v) at fixed drive.
+and one more equation, y' = s (given approach speed) or S^2 + C^2 = Z^2 (given amplitude).  All functions are
+smooth through a fold and down to grazing (see also arXiv:2510.16218).  The Floquet multipliers are
+the eigenvalues of dF_(u,v)/d(u, v) at fixed drive.  Derivation: ``docs/theory/orbits.md``.
 """
 
 import math

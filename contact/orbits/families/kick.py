@@ -1,12 +1,9 @@
 """A collision as a kick, and the p_m orbits that follow by linear algebra.
 
 One collision is simulated, entered with approach velocity v from the steady motion without ringing.  It
-changes the deviations of all modes by B(v), referred to the touch by their free flow.  The orbit on which it
-happens once in m drive periods follows from B (``contact.orbits.families.single_impact``).  The p_m orbit
-ends (fold) where its amplitude is smallest.  With Newton's law B is proportional to v and the result exact.
-
-A law can have its orbits in closed form (`repeated_touch` of ``contact.touch``).  The real collision starts
-with the ringing that the last one has left, and at another acceleration of the tip, which this neglects.
+changes the deviations of all modes by B(v), referred to the touch by their free flow.  The orbit follows from
+B (``contact.orbits.families.single_impact``), and its fold is where the amplitude is smallest.  A law can
+have its orbits in closed form (`repeated_touch` of ``contact.touch``).
 """
 
 import math

@@ -1,33 +1,24 @@
-r"""Orbits with one collision every m drive periods: closed by linear algebra, exact under Newton's law.
+"""Orbits with one collision every m drive periods: closed by linear algebra, exact under Newton's law.
 
-    q_k = Z Im(H_k exp(i w t)) + u_k,   H_k = Gamma_k w^2/(omega_k^2 - w^2 + i c_k w),   w = 2 pi f
-
-u_k is free. A collision at approach speed v changes the deviations (u_k, u_k') by B_k(v), referred to its
-first touch. With N the free flow of mode k over m/f, G = det N = exp(-c_k m/f) and D = det(I - N) = 1 - tr N
-+ G, the deviations that repeat after m/f are, just before the touch,
+A collision at approach speed v changes the deviations (u_k, u_k') from the steady motion by B_k(v), referred
+to its first touch.  With w = 2 pi f, N the free flow of mode k over m/f, G = det N = exp(-c_k m/f) and
+D = det(I - N) = 1 - tr N + G, the deviations that repeat after m/f are, just before the touch,
 
     (I - N)^-1 N B = (N - G I) B/D,      and B more just after it.
 
-**Amplitude against speed.** With p = sum phi_k u_k, r = sum phi_k u_k' before the touch, and the steady tip
-amplitude A = Z |sum phi_k H_k|, the conditions x = gap, x' = v are
-
-    A sin(psi) = gap - p,   A cos(psi) = (v - r)/w,   psi = w t_0 + arg sum phi_k H_k.
-
-Hence
+With p = sum phi_k u_k, r = sum phi_k u_k' there and the steady tip amplitude A the orbit has
 
     A^2 = (gap - p)^2 + ((v - r)/w)^2,      F/F_g - 1 = A/gap - 1.                                      (a)
 
-**Newton's law.** x' -> -e x' at once is the kick B_k = (0, -(1 + e) phi_k v/sum phi^2), linear in v, so that
-p = s v and (v - r)/w = b v: (a) is a quadratic. If s > 0, A has a least value, the **fold** of the node
-(larger v) and the saddle:
+**Newton's law.** B_k = (0, -(1 + e) phi_k v/sum phi^2), so that p = s v and (v - r)/w = b v: (a) is a
+quadratic.  If s > 0, A has a least value, the **fold** of the node (larger v) and the saddle:
 
     v = s gap/(s^2 + b^2),   A_m/gap = F_m/F_g = 1/sqrt(1 + k^2),   k = s/b.
-
-For one mode k = -w N12 (1 + e)/(1 - N11 + e N22 - e G), which is the F_m of Eq. (1) at any amplitude.
 
 The formulae are exact if the tip does not reach the wall at another time (`SingleImpactOrbit.admissible`).
 Units: SI with mass-normalised modes (q in m kg^0.5).
 Sources: letter of 1996, Eq. (1) and Fig. 3; A. B. Nordmark, J. Sound Vib. 145 (1991) 279.
+Derivation: ``docs/theory/orbits.md``.
 """
 
 import math

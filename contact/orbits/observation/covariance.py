@@ -1,16 +1,13 @@
-r"""The covariance of the strobe points around an orbit under noise of the drive, to first order.
+"""The covariance of the strobe points around an orbit under noise of the drive, to first order.
 
 In drive period n the amplitude is (1 + e_n) times that of the orbit, e_n Gaussian of standard deviation sigma
-and memory r: e_(n+1) = r e_n + sqrt(1 - r^2) sigma xi_n, white for r = 0; r = exp(-1/(f t_c)) for a drift of
-correlation time t_c.  With M_n the derivative of a strobe by the one before and b_n by e_n, the deviations
-obey x_(n+1) = M_n x_n + b_n e_n, and the covariance C_n of (x_n, e_n)
+and memory r: e_(n+1) = r e_n + sqrt(1 - r^2) sigma xi_n.  With M_n the derivative of a strobe by the one
+before and b_n by e_n, the covariance C_n of deviation and e_n obeys
 
     C_(n+1) = A_n C_n A_n^T + Q,   A_n = [[M_n, b_n], [0, r]],   Q = diag(0, (1 - r^2) sigma^2),
 
-repeats after the m periods of the orbit (as in Simpson, Hogan and Kuske, arXiv:1207.2703, for Nordmark's map
-and white noise).  White noise of the read-out adds its own covariance.  The theory requires that no touch
-comes or goes within the cloud.  It ends at grazing, where b_n or M_n has a square root's slope, and at a
-fold, where a multiplier becomes 1.
+and repeats after the m periods of the orbit.  No touch may come or go within the cloud.
+Source: Simpson, Hogan and Kuske, arXiv:1207.2703.  Derivation: ``docs/theory/noise.md``.
 """
 
 from dataclasses import replace

@@ -1,17 +1,15 @@
 """The loss of a periodic orbit when the drive amplitude is lowered.
 
 **Scan.** The amplitude is lowered in steps that carry the physical state along.  A step succeeds if the
-motion settles on an orbit of the same period with the same impacts.  (Impacts alone can go on for thousands
-of periods below the end of a p_m orbit.)  The step is then enlarged; otherwise it is halved and made again
-from the last orbit that held.  Near a fold the basin is narrow, and a long step can lose an orbit that
-still exists.  The last step therefore has the required width, and brackets the end.
+motion settles on an orbit of the same period with the same impacts.  The step is then enlarged; otherwise it
+is halved and made again from the last orbit that held.  The last step has the required width, and brackets
+the end.
 
 **Exact end.** The orbit that held is then followed through the bracket: by continuation for an impact
-oscillator (``contact.orbits.branches.continuation``), in closed form for the Nordmark map
-(``contact.maps.nordmark_orbits``).  The first event on its branch is the end, a "fold", "period doubling",
-"torus", "branch point" or "grazing" (``contact.orbits.branches.events``).  If the orbit is stable at the
-lower end of the bracket, the motion lost it too early, and the scan goes on from the orbit there.  Otherwise
-only the "bracket" is known: for other maps, several impacts in the map, or two events closer than 1e-6.
+oscillator (``contact.orbits.branches.continuation``), in closed form for the Nordmark map.  The first event
+on its branch (``contact.orbits.branches.events``) is the end.  If the orbit is stable at the lower end of the
+bracket, the scan goes on from the orbit there.  Only the "bracket" is known of other maps, of several
+impacts in the map, and of two events closer than 1e-6.  See ``docs/theory/folds.md``.
 """
 
 import math

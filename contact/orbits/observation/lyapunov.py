@@ -1,19 +1,13 @@
-r"""Lyapunov exponents from the Jacobians of the period map.
+"""Lyapunov exponents from the Jacobians of the period map.
 
 J_n is the derivative of the period map at the n-th strobe.  With Q R = J_n Q', Q' from the step before,
 
     lambda_i = < log |R_ii| >        [per drive period],  largest first.
 
 For an impact oscillator J_n comes from ``contact.sensitivity.replay``.  A strobe that falls into a contact is
-passed over: that J_n spans more than one period.  On an orbit of period m the exponents are log|mu_i|/m, with
-mu_i the eigenvalues of J_m ... J_1.  For Eq. (1) of the letter (1996) the determinants give
-
-    sum of lambda_i = -mu/f + 2 log(tau) x impacts per period.
-
-Averages are weighted by w(t) = exp(-1/(t (1 - t))), t the fraction of the run.  On periodic and
-quasi-periodic motions they converge faster than any power of its length (S. Das, Y. Saiki, E. Sander,
-J. A. Yorke, Nonlinearity 30 (2017) 4111), on chaos like a plain average.  The standard error comes from the
-scatter of blocks.  Every ``contact.maps.protocol.DifferentiableMap`` has these exponents.
+passed over: that J_n spans more than one period.  Averages are weighted by w(t) = exp(-1/(t (1 - t))), t the
+fraction of the run (S. Das, Y. Saiki, E. Sander, J. A. Yorke, Nonlinearity 30 (2017) 4111).  The standard
+error comes from the scatter of blocks.  See ``docs/theory/orbits.md``.
 """
 
 import math

@@ -1,21 +1,17 @@
 """Settling on a periodic orbit, and its period.
 
 **Repetition.** The motion is followed in blocks.  After each block the last points are compared with the
-points before them (``contact.orbits.observation.repetition``), to `TOLERANCE` of the scale.  Next to a period
-doubling a transient alternates about p_m, and repeats after 2m first.  A period is therefore accepted when a
-repetition `ALIKE` times as rough has the same one.  A motion that has not settled after `most_cycles` periods
-gets period 0: chaos, a longer period, or a transient that is not over.  Any strobed map settles this way.
+points before them (``contact.orbits.observation.repetition``), to `TOLERANCE` of the scale.  A period is
+accepted when a repetition `ALIKE` times as rough has the same one.  A motion that has not settled after
+`most_cycles` periods gets period 0.  Any strobed map settles this way.
 
-**Proof.** A transient of an impact oscillator ends as soon as its orbit is known.  A motion that seems to
-repeat to a part in a thousand is compared with a periodic orbit, found from it by shooting
-(``contact.orbits.shooting``).  That orbit must be stable, and touch the stop only where it should
-(certified).  If the motion then comes closer to it over a whole block as its largest multiplier predicts,
+**Proof.** A motion of an impact oscillator that repeats to `FIRST_LOOK` is compared with a stable, admissible
+orbit, found from it by shooting (``contact.orbits.shooting``).  It ends there if over a whole block
 
-    distance(n + block) <= SLACK |mu|^(block/m) distance(n) + rounding,
+    distance(n + block) <= SLACK |mu|^(block/m) distance(n) + rounding,     mu the largest multiplier.
 
-the motion is in the linear neighbourhood of the orbit and ends on it.  The motion without impacts is settled
-when the free motion that is left cannot reach the stop.  Near a fold, where |mu| comes close to 1, this saves
-thousands of periods.
+The motion without impacts is settled when the free motion that is left cannot reach the stop.  See
+``docs/theory/orbits.md``.
 """
 
 from dataclasses import dataclass, replace

@@ -1,34 +1,24 @@
-r"""A touch near grazing, and the orbit of period 1 that survives it: closed forms.
+"""A touch near grazing, and the orbit of period 1 that survives it: closed forms.
 
 The wall multiplies the spring constant by K (letter of 1996, Ref. [10]): behind the gap the contact adds
-kappa = (K - 1) Omega^2 = s^2 [1/s^2], without loss.
+kappa = (K - 1) Omega^2 = s^2 [1/s^2], without loss.  A peak of height h over the gap, with deceleration
+a = omega^2 gap, meets the wall at v = sqrt(2 a h).  With z = s v/a the kick is
 
-**One collision.** Next to a peak of height h over the gap the incoming motion is a parabola of deceleration
-a = omega^2 gap, and meets the wall at v = sqrt(2 a h). With tau = s t and D = d kappa/a
+    J = (2 a/s)(z - atan z) = (4/3) kappa sqrt(2/a) h^(3/2) [1 - (3/5) z^2 + ...]  and  2 v - pi a/s + ...
 
-    D'' + D = -1,   D(0) = 0,   D'(0) = z = s v/a = sqrt(2 kappa h/a)
+for small and large z.  A Hertz contact of stiffness k [N/m^1.5] has the impulse k (3 pi/8) sqrt(2/a) h^2.
 
-until D = 0 at tau_c. Without the wall the velocity would fall by tau_c, so that the kick is
-
-    J = (a/s) [z - tau_c - D'(tau_c)] = (2 a/s)(z - atan z)
-      = (4/3) kappa sqrt(2/a) h^(3/2) [1 - (3/5) z^2 + ...]  and  2 v - pi a/s + ...
-
-for small and large z: two power laws that cross at z^2 = 3, h = (3/2) a/kappa. A Hertz contact of stiffness k
-[N/m^1.5] on a beam is pressed by the parabola itself, with the impulse k (3 pi/8) sqrt(2/a) h^2; phi_1^2
-times that kicks the tip.
-
-**p1 with one touch.** A touch at height h that changes the velocity of the tip, per unit of phi^2, by J(h)
-leaves to leading order
+**p1 with one touch** that changes the velocity of the tip, per unit of phi^2, by J(h): to leading order
 
     excess gap = h + S_- J(h),   a multiplier -1 at  S_+ dJ/dh = 1,
     S_-, S_+ = sum_k phi_k^2 M12_k/(1 -+ alpha_k + gamma_k)   [s/kg]
 
-with M_k the free flow of mode k over 1/f, alpha its trace, gamma its determinant. For one mode
-dJ/dh = 2 s z/(1 + z^2), hence with Lambda = 1/S_+
+with M_k the free flow of mode k over 1/f, alpha its trace, gamma its determinant.  For one mode, with
+Lambda = 1/S_+,
 
-    z_f = (s/Lambda) [1 - sqrt(1 - (Lambda/s)^2)] -> Lambda/(2 s),   h_f = (a/2) z_f^2/kappa
+    z_f = (s/Lambda) [1 - sqrt(1 - (Lambda/s)^2)],   h_f = (a/2) z_f^2/kappa
 
-and no doubling near grazing if s < Lambda. As K grows, h_f goes like K^(-2).
+and no doubling near grazing if s < Lambda.  Derivation: ``docs/theory/collision.md``.
 """
 
 import math

@@ -1,26 +1,21 @@
-r"""When noise ends an orbit in a scan, by formulas: what `scans` finds by simulation.
+"""When noise ends an orbit in a scan, by formulas: what `scans` finds by simulation.
 
 **White noise next to a fold.**  The normal form (`places`) in m periods, eta' = mu - eta^2 with noise of
 variance 2D, mu = K d/4, D = (K s nu/4)^2/2, d the distance to the fold, s the standard deviation, nu the
-unevenness.  Its mean time from far above to far below is known without approximation, for mu of either sign
-(Sigeti and Horsthemke, J. Stat. Phys. 54, 1217 (1989)):
+unevenness, has the mean time (Sigeti and Horsthemke, J. Stat. Phys. 54, 1217 (1989))
 
     T = 2 sqrt(pi/D) int_0^inf exp((mu v^2 - v^6/12)/D) dv,       rate = 1/(m T).
 
-**Drift next to a fold.**  A drift e slower than the orbit ends it where x + e crosses the fold, if it stays
-beyond until the orbit has left.  In units t_0, y_0 of time (m periods) and excess with (K/4) y_0 t_0^2 = 1
-and y_0^2 = s^2 m t_0/t_c, t_c in drive periods, this is eta' = y - eta^2, y a Brownian motion of variance 2t:
-y has come to -`LAG` on average when eta leaves.  So e is absorbed at the fold less `LAG` y_0.
+**Drift next to a fold.**  It is absorbed at the fold less `LAG` y_0, with (K/4) y_0 t_0^2 = 1 and
+y_0^2 = s^2 m t_0/t_c, t_c in drive periods.
 
-**Drift below grazing.**  p_1 is touched when x + e > 0: the motion follows a slow drift.
-
-**White noise below grazing.**  The peaks h_n of the tip are Gaussian, with the variance S^2 and correlation
-R of neighbours that the linear motion gives them; they pass the stop at the rate P(h_n < h < h_(n+1)) =
+**Below grazing.**  A drift e touches when x + e > 0.  In white noise the peaks of the tip have the variance
+S^2 and correlation R of neighbours, and pass the stop h above their mean at the rate
 2 T(h/S, sqrt((1 - R)/(1 + R))), T Owen's function.
 
-With a drift the density of e is carried along the whole scan (Fokker-Planck equation of an Ornstein-
-Uhlenbeck process with an absorbing end, second order in the width of cells, exact in time): steps remember
-each other.  What ends in the second half of a waiting counts for the next step, as in the scans.
+With a drift the density of e is carried along the whole scan by its Fokker-Planck equation with an absorbing
+end, exactly in time: steps remember each other.  What ends in the second half of a waiting counts for the
+next step, as in the scans.  Derivation: ``docs/theory/noise.md``.
 """
 
 import math
