@@ -25,7 +25,7 @@ spring = ImpactOscillator(
 impacts = simulate(spring, periods=5).impacts
 
 # %%
-# A touch of the kind `STAY` is a rest.  It begins after all hops, also those too low to be computed one by one.
+# A touch of the kind `STAY` is a rest.  It begins after all hops, also after the ones below rounding.
 rests = np.flatnonzero(impacts.kind == ImpactKind.STAY)
 before, after = rests[-2:]
 leaves, start, end = impacts.end[before], impacts.start[before], impacts.end[after]

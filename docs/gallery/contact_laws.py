@@ -2,7 +2,7 @@
 Four contact laws
 =================
 
-A ball of 4 g hits an elastic stop at 0.3 m/s.  Three laws are fitted to a restitution of 0.6 and to the same
+A ball of 4 g hits a soft stop at 0.3 m/s.  Three laws are fitted to a restitution of 0.6 and to the same
 greatest depth.  Their loops of force against depth enclose the same area, the energy that the ball loses.
 The loops have different shapes, peak forces and contact times.  Hertz's law loses no energy, so that its
 loop is a line.
@@ -15,7 +15,16 @@ import numpy as np
 from scipy.optimize import brentq
 
 from beam import ModalModel
-from contact import HertzContact, HuntCrossley, ImpactOscillator, LinearContact, PowerContact, State, Stop, simulate
+from contact import (
+    HertzContact,
+    HuntCrossley,
+    ImpactOscillator,
+    LinearContact,
+    PowerContact,
+    State,
+    Stop,
+    simulate,
+)
 
 mass, speed, e, depth = 4e-3, 0.3, 0.6, 50e-6
 ball = ModalModel(omega=[0], decay_rate=[0], phi=[mass**-0.5], participation=[0])

@@ -2,15 +2,14 @@
 A strange attractor
 ===================
 
-At a high restitution the spring can move chaotically.  Its strobes, one point in each drive period, then never
-repeat.  They lie on a set of folded sheets: the strange attractor.  Its largest Lyapunov exponent is the rate
-at which two neighbouring motions separate.  A positive exponent means chaos.
+A spring with a restitution of 0.95 can move chaotically: its motion never repeats.  Its strobes, one point in
+each drive period, form a set of layers within layers, a strange attractor.  The largest Lyapunov exponent is
+the mean rate at which neighbouring motions separate.  It is positive in chaos.
 """
 
 # %%
 # The drive of 24 Hz, near resonance, is twice as large as the grazing amplitude.
 import matplotlib.pyplot as plt
-import numpy as np
 
 from beam import single_mode
 from contact import HarmonicDrive, ImpactOscillator, NewtonRestitution, Stop, StroboscopicMap
@@ -24,14 +23,14 @@ spring = ImpactOscillator(
 strobed = StroboscopicMap(oscillator=spring)
 
 # %%
-# The first thousand drive periods are left out.  The exponent is averaged over the next five thousand.
+# The first 1000 drive periods are left out.  The exponent is a mean over the next 5000.
 start = strobed.orbit(strobed.at(-1e-3).steady(), 1000).end
 exponents, _ = map_exponents(strobed, start, 5000)
 print(f"largest Lyapunov exponent: {exponents.largest:.2f} per drive period")
 
 # %%
-# Each point is a displacement and a velocity.  Its colour says whether the tip hit the stop in the drive period
-# before.  The right panel shows the part in the frame: each sheet consists of thinner sheets.
+# The colour of a strobe shows whether the tip has hit the stop in the drive period before.  The right panel
+# enlarges the frame: each layer consists of thinner layers.
 strobes = strobed.orbit(start, 200000)
 x, v = 1e3 * strobes.points[:, 0], spring.model.omega[0] * strobes.points[:, 1]
 hit = strobes.impacts > 0
