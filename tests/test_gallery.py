@@ -63,6 +63,43 @@ def two_stops(found):
     assert np.ptp(small.impacts.approach[-2:]) < 1e-9 and np.ptp(large.impacts.approach[-2:]) > 1.0
 
 
+def contact_laws(found):
+    for name, (impacts, depth, _) in found["found"].items():
+        e = 1.0 if name == "Hertz" else 0.6
+        assert [depth.max(), -impacts.rebound[0]] == approx([50e-6, e * 0.3], rel=1e-6)
+        assert impacts.loss[0] == approx(0.5 * 4e-3 * 0.3**2 * (1.0 - e**2), rel=1e-9, abs=1e-15)
+    hertz = HertzContact(stiffness=1.25 * 4e-3 * 0.3**2 / 50e-6**2.5)
+    assert found["found"]["Hertz"][0].duration[0] == approx(hertz.contact_time(4e-3, 0.3), rel=1e-5)
+
+
+def coming_to_rest(found):
+    w, hops, impacts = 10 * np.pi, found["hops"], found["impacts"]
+    pressed = 105 - 4e-3 * found["model"].omega[0] ** 2
+    assert 15e-3 * w**2 * np.sin(w * found["leaves"]) == approx(-pressed, rel=1e-9)
+    assert hops[-9:] / hops[-10:-1] == approx(0.7, rel=1e-4)
+    assert impacts.start[found["after"]] - found["landings"][-1] == approx(hops[-1] * 0.7 / 0.3, rel=1e-4)
+
+
+def matrices_of_your_own(found):
+    K, M, names, n = found["K"].toarray(), found["M"].toarray(), found["points"], found["times"] <= 0.06
+    square, V = (part[..., :8] for part in eigh(K, M))
+    rows, base, z, w = (
+        np.array([names["roof"], -names["leg"]]) @ V,
+        V.T @ M @ found["sideways"],
+        4e-4,
+        126 * np.pi,
+    )
+
+    def rate(t, y):
+        push = 1e6 * np.maximum(0.0, rows @ y[:8] - [0.5e-3, 0.2e-3])
+        return [*y[8:], *(base * z * w**2 * np.sin(w * t) - square * (y[:8] + 4e-5 * y[8:]) - push @ rows)]
+
+    other = solve_ivp(rate, (0, 0.06), np.zeros(16), "DOP853", found["times"][n], rtol=1e-9, atol=1e-12)
+    points = found["model"].points
+    ours = found["motion"].displacement[n] @ np.transpose([points["roof"].row, -points["leg"].row])
+    np.testing.assert_allclose(ours, (rows @ other.y[:8]).T, atol=1e-8)
+
+
 @pytest.mark.parametrize("path", [*GALLERY.glob("*.py")], ids=lambda path: path.stem)
 def test_an_example_runs_and_is_right(path, monkeypatch, tmp_path):
     text, shown = path.read_text("utf-8"), []
