@@ -3,8 +3,8 @@ Which period appears at grazing
 ===============================
 
 Above grazing the motion often jumps to an orbit p_m, which has one impact in m drive periods.  The drive
-frequency decides on m.  Nordmark's map has a band of frequencies for each m, and the bands leave no gaps.  One
-mode with its exact motion makes the same jump, but only in the upper part of each band.
+frequency decides on m.  Nordmark's map has a band of frequencies for each m, and the bands leave no gaps.
+One mode with its exact motion makes the same jump, but only in the upper part of each band.
 """
 
 # %%

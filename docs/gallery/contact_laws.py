@@ -15,16 +15,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from beam import ModalModel
-from contact import (
-    HertzContact,
-    HuntCrossley,
-    ImpactOscillator,
-    LinearContact,
-    PowerContact,
-    State,
-    Stop,
-    simulate,
-)
+from contact import ImpactOscillator, State, Stop, simulate
 
 mass, speed, e, depth = 4e-3, 0.3, 0.6, 50e-6
 ball = ModalModel(omega=[0], decay_rate=[0], phi=[mass**-0.5], participation=[0])
@@ -43,6 +34,8 @@ def impact(law):
 # %%
 # The stiffness k of each law follows from the greatest depth, 50 µm.  A touch ends when the ball is back at
 # depth zero.  The linear stop and the 3/2 power stop have released the ball before that.
+from contact import HertzContact, HuntCrossley, LinearContact, PowerContact
+
 fitted = dict(restitution=e, mass=mass)
 laws = {
     "linear": lambda k: LinearContact.with_restitution(stiffness=k, **fitted),

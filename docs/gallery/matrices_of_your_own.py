@@ -2,9 +2,9 @@
 Matrices of your own
 ====================
 
-Mass and stiffness matrices of any program make a modal model.  Here scikit-fem makes them for a portal frame of
-steel with clamped feet.  The base is shaken sideways.  The roof can hit a stop on the right, and the left leg
-can hit one on the left.  Each point has a name and a row, which picks its motion from all unknowns.
+Mass and stiffness matrices of any program make a modal model.  Here scikit-fem makes them for a steel frame
+with clamped feet.  The base is shaken sideways.  The roof can hit a stop on the right, and the left leg can
+hit one on the left.  Each point has a name and a row, which picks its motion from all unknowns.
 """
 
 # %%
