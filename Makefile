@@ -59,5 +59,5 @@ $(READY): pyproject.toml constraints.txt
 	@touch $@
 
 clean:
-	rm -rf build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis docs/made docs/examples docs/api/made
 	find beam contact studies tests -name __pycache__ -type d -prune -exec rm -rf {} +

@@ -79,11 +79,23 @@ sphinx_gallery_conf = {
     "backreferences_dir": "examples/backreferences",
 }
 
-# what the pages take from the programs: the picture of the tour, and the page of all stored results
+# what the pages take from the programs: pictures, and the page of all stored results
 MADE, REPORT = HERE / "made", ROOT / "results" / "report" / "index.html"
 MADE.mkdir(exist_ok=True)
-tour, place = [sys.executable, "-m", "studies", "tour"], os.environ | {"PYTHONPATH": str(ROOT)}
-subprocess.run(tour, cwd=MADE, env=place, check=True, stdout=subprocess.DEVNULL)
+FIGURES = {
+    "transitions": "orbit_diagram",
+    "hysteresis": "hysteresis",
+    "time_trace": "time_trace",
+    "breakdown": "breakdown",
+}
+for study, figure in {"tour": "", **FIGURES}.items():
+    picture = MADE / "results" / study / f"{figure}.png"
+    if figure and picture.exists():  # `make clean` removes it
+        continue
+    call = [sys.executable, "-m", "studies", study, *(["--quick"] if figure else [])]
+    subprocess.run(
+        call, cwd=MADE, env=os.environ | {"PYTHONPATH": str(ROOT)}, check=True, capture_output=True
+    )
 inside = """<p>Nothing is stored yet. <code>make study</code> runs the main study,
 <code>python -m studies --all</code> every study. Then <code>make site</code> fills this page.</p>"""
 if REPORT.exists():

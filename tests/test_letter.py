@@ -43,6 +43,15 @@ def test_every_point_has_an_expected_verdict():
     assert EXPECTED.keys() == POINTS.keys()
 
 
+def test_the_page_of_verdicts_has_each_point_with_its_verdict():
+    page = (ROOT / "docs" / "letter" / "verdicts.md").read_text("utf-8")
+    rows = [tuple(line.strip("| ").split(" | ")) for line in page.splitlines() if line.startswith("| ")]
+    expected = [(point.says, EXPECTED[key], point.study) for key, point in POINTS.items()]
+    assert sorted((says, verdict, study) for says, verdict, _, study in rows if study != "study") == sorted(
+        expected
+    )
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(
     "key", [pytest.param(key, marks=pytest.mark.xdist_group(point.study)) for key, point in POINTS.items()]

@@ -15,7 +15,7 @@ K = 10 ... 10^6:
 
 and for the beam with Hertz contact the excess at which the kick leaves the square root, at which p1 loses its
 stability, and at which a multiplier passes -1. The study compares the loss of stability with the letter's
-amplitude stability. `closed_forms` derives the equations.
+amplitude stability. ``docs/theory/collision.md`` derives the equations.
 
 Run:     python -m studies soft_wall [--decades 1 6] [--quick]
 Writes:  kicks.csv, doublings.csv; figure kick
