@@ -3,8 +3,8 @@ Coming to rest on a stop
 ========================
 
 A constant force presses a spring against its stop.  A slowly shaken base pulls the tip off once in each drive
-period.  The tip falls back and bounces, and its hops become shorter by the restitution.  Infinitely many
-impacts take place in a finite time.  After them the tip rests on the stop, until the base pulls it off again.
+period.  The tip falls back and bounces.  The low hops become shorter by the restitution each time, so that
+infinitely many end in a finite time.  Then the tip rests on the stop, until the base pulls it off again.
 """
 
 # %%
