@@ -4,7 +4,7 @@ Which period appears at grazing
 
 Above grazing the motion often jumps to an orbit p_m, which has one impact in m drive periods.  The drive
 frequency decides on m.  Nordmark's map has a band of frequencies for each m, and the bands leave no gaps.
-One mode with its exact motion makes the same jump, but only in the upper part of each band.
+One mode with its exact motion makes the same jump, but mostly in the upper part of the band.
 """
 
 # %%
@@ -24,7 +24,7 @@ for band in bands:
 # %%
 # Each exact motion starts without impacts.  Then the drive is raised to 0.1 % above grazing.
 model, stop = single_mode(**mode), Stop(gap=11.9e-3, law=NewtonRestitution(local_restitution=0.1))
-frequencies = np.arange(19.605, 23.34, 0.01)
+frequencies = np.arange(19.705, 23.34, 0.01)
 drives = [HarmonicDrive(frequency=f) for f in frequencies]
 springs = [ImpactOscillator(model=model, stop=stop, drive=drive) for drive in drives]
 orbits = [onset_orbit(StroboscopicMap(oscillator=one)) for one in springs]
@@ -32,8 +32,8 @@ m, impacts = np.array([(orbit.m, orbit.impacts) for orbit in orbits]).T
 print(f"one impact in m periods: {np.mean((m > 0) & (impacts == 1)):.0%} of the frequencies")
 
 # %%
-# Pale bars are bands of the map.  Dots are exact motions with one impact in m periods.  Where a bar has no
-# dots, the exact motion has more impacts, or it has not become periodic.
+# Pale bars are bands of the map.  Dots are exact motions with one impact in m periods.  At a frequency without
+# a dot, the exact motion has more impacts, or it has not become periodic.
 figure, axes = plt.subplots(figsize=(6, 4.4), layout="constrained")
 for band, colour in zip(bands, plt.colormaps["viridis"](np.linspace(0, 0.85, len(bands))), strict=True):
     axes.barh(band.m, band.upper - band.lower, 0.8, band.lower, color=colour, alpha=0.3)

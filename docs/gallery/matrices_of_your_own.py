@@ -47,11 +47,11 @@ print("stops that are touched, in their order:", *motion.impacts.stop)
 
 # %%
 # Triangles mark the stops beside the frame, and dashed lines mark their gaps.
-figure, (left, right) = plt.subplots(1, 2, figsize=(8, 3.8), layout="constrained", width_ratios=(2, 3))
+figure, (left, right) = plt.subplots(1, 2, figsize=(7, 4.4), layout="constrained", width_ratios=(2, 3))
 draw(mesh.scaled(1e3), ax=left).set(aspect="equal", xlabel="mm")
 for stop, colour, mark, at in zip(stops, ("#D55E00", "#0072B2"), "<>", ((207, 198), (-7, 100)), strict=True):
     left.plot(*at, mark, color=colour, markersize=10)
-    left.text(0.74 * at[0] + 20, 0.9 * at[1], stop.at, color=colour, ha="center")
+    left.text(0.63 * at[0] + 32, 0.9 * at[1], stop.at, color=colour, ha="center")
     right.plot(1e3 * times, 1e3 * motion.displacement @ model.points[stop.at].row, color=colour)
     right.axhline(1e3 * stop.side * stop.gap, color=colour, linestyle="--")
 right.set(xlabel="time (ms)", ylabel="displacement (mm)", xlim=(0, 160))

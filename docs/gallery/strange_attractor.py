@@ -29,20 +29,18 @@ exponents, _ = map_exponents(strobed, start, 5000)
 print(f"largest Lyapunov exponent: {exponents.largest:.2f} per drive period")
 
 # %%
-# The colour of a strobe shows whether the tip has hit the stop in the drive period before.  The right panel
-# enlarges the frame: each layer consists of thinner layers.
+# The colour of a strobe shows whether the tip has hit the stop in the drive period before.  The small panel
+# enlarges a part: each layer consists of thinner layers.
 strobes = strobed.orbit(start, 200000)
 x, v = 1e3 * strobes.points[:, 0], spring.model.omega[0] * strobes.points[:, 1]
 hit = strobes.impacts > 0
-figure, panels = plt.subplots(1, 2, figsize=(8, 3.8), layout="constrained")
-for axes, size in zip(panels, (0.2, 0.5), strict=True):
-    axes.plot(x[hit], v[hit], ".", color="#D55E00", markersize=size)
-    axes.plot(x[~hit], v[~hit], ".", color="#0072B2", markersize=size)
-    axes.set_xlabel("strobed displacement (mm)")
-frame = dict(xlim=(-0.9, -0.3), ylim=(0.718, 0.728))
-panels[0].add_patch(plt.Rectangle((-0.9, 0.718), 0.6, 0.01, fill=False))
-panels[0].set(ylabel="strobed velocity (m/s)")
-panels[0].text(-0.7, 0.663, "no impact", color="#0072B2")
-panels[0].text(-2.6, 0.715, "impact", color="#D55E00")
-panels[1].set(**frame)
+figure, axes = plt.subplots(figsize=(6.4, 4.6), layout="constrained")
+small = axes.inset_axes((0.03, 0.55, 0.4, 0.42), xlim=(-0.9, -0.3), ylim=(0.718, 0.728), xticks=[], yticks=[])
+for panel in (axes, small):
+    panel.plot(x[hit], v[hit], ".", color="#D55E00", markersize=0.4)
+    panel.plot(x[~hit], v[~hit], ".", color="#0072B2", markersize=0.4)
+axes.indicate_inset_zoom(small, edgecolor="k", alpha=1)
+axes.text(-0.5, 0.7, "impact", color="#D55E00")
+axes.text(-0.9, 0.668, "no impact", color="#0072B2")
+axes.set(xlabel="strobed displacement (mm)", ylabel="strobed velocity (m/s)", xlim=(-4.6, 0.3))
 plt.show()
