@@ -32,8 +32,8 @@ m, impacts = np.array([(orbit.m, orbit.impacts) for orbit in orbits]).T
 print(f"one impact in m periods: {np.mean((m > 0) & (impacts == 1)):.0%} of the frequencies")
 
 # %%
-# Pale bars are bands of the map.  Dots are exact motions with one impact in m periods.  At a frequency without
-# a dot, the exact motion has more impacts, or it has not become periodic.
+# Pale bars are bands of the map.  Dots are exact motions with one impact in m periods.  At a frequency
+# without a dot, the exact motion has more impacts, or it has not become periodic.
 figure, axes = plt.subplots(figsize=(6, 4.4), layout="constrained")
 for band, colour in zip(bands, plt.colormaps["viridis"](np.linspace(0, 0.85, len(bands))), strict=True):
     axes.barh(band.m, band.upper - band.lower, 0.8, band.lower, color=colour, alpha=0.3)
