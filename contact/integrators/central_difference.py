@@ -5,15 +5,12 @@
 
 with the damping either centred, v = (v_{n-1/2} + v_{n+1/2})/2, solved mode by mode, or lagged, v = v_{n-1/2}.
 The motion starts with v_{1/2} = v_0 + (h/2) a_0; the velocity at a grid point is the mean of its neighbours.
+Order 2.  A lasting contact is stable up to the stiffness k with
 
-Order 2.  Stable in flight for h <= 2/omega with centred and h <= (2/omega)(sqrt(1 + zeta^2) - zeta), zeta =
-c/(2 omega), with lagged damping (T. Belytschko, in Belytschko and Hughes, Computational Methods for Transient
-Analysis, 1983, ch. 1).  A lasting contact of stiffness k is stable if and only if h^2 (K + k phi phi^T) <= 4,
-with lagged damping h^2 (K + k phi phi^T) + 2 h C <= 4, as matrices.  The quadratic of a step, for lagged
-damping (z - 1)^2 + h c (z - 1) + h^2 kappa z = 0 with c = x*Cx and kappa = x*Kx, then has its roots in the
-unit disc, and at the limit one at z = -1,
+    1/k = sum_k phi_k^2 / (4/h^2 - 2 c_k/h - omega_k^2)    (without the term in c_k for centred damping)
 
-    1/k = sum_k phi_k^2 / (4/h^2 - 2 c_k/h - omega_k^2)    (without the term in c_k for centred damping).
+(T. Belytschko, in Belytschko and Hughes, Computational Methods for Transient Analysis, 1983, ch. 1).
+Derivation: ``docs/theory/steps.md``.
 """
 
 import math

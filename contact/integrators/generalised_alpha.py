@@ -6,44 +6,26 @@ With f = g + P sin(w t) - c v - omega^2 q - phi N the force per modal mass, N as
     q_{n+1} = q_n + h v_n + h^2 ((1/2 - beta) a_n + beta a_{n+1})
     v_{n+1} = v_n + h ((1 - gamma) a_n + gamma a_{n+1})
 
-(J. Chung, G. M. Hulbert, J. Appl. Mech. 60 (1993) 371, with the forces of both ends weighted).
-alpha_m = alpha_f = 0 gives N. M. Newmark's method (J. Eng. Mech. Div. ASCE 85 (1959) 67), alpha_m = 0 the
-method of H. M. Hilber, T. J. R. Hughes and R. L. Taylor (Earthq. Eng. Struct. Dyn. 5 (1977) 283).  The
-acceleration a is carried from step to step and starts as f_0.
+(J. Chung, G. M. Hulbert, J. Appl. Mech. 60 (1993) 371, with the forces of both ends weighted).  The
+acceleration a is carried from step to step and starts as f_0.  A method with percussions may put a weight eta
+in place of the 1/2 in the positions (``moreau_jean``).  The modes are coupled by N alone: with D = 1 -
+alpha_m + (1 - alpha_f)(c gamma h + omega^2 beta h^2) per mode, and d*, d'* the end of the step without the
+contact force there, one equation N = N(d* - B N, d'* - G N) remains,
 
-A method with percussions may put a weight eta in place of the 1/2 in the positions (``moreau_jean``).
+    (B, G) = (beta h^2, gamma h) (1 - alpha_f) sum phi^2 / D.
 
-The step.  The modes are coupled by N alone.  With D = 1 - alpha_m + (1 - alpha_f)(c gamma h + omega^2 beta
-h^2) per mode, and d*, d'* the end of the step without the contact force there, the tip has
-
-    d = d* - B N,   d' = d'* - G N,   (B, G) = (beta h^2, gamma h) (1 - alpha_f) sum phi^2 / D,
-
-so that one number is unknown: N = N(d* - B N, d'* - G N).  The right side falls as N grows, hence there is
-one root.  A dashpot makes the force jump at d = 0; there N takes the value between that leaves the tip at
-d = 0.
-
+A dashpot makes the force jump at d = 0; there N takes the value between that leaves the tip at d = 0.
 Order 2 if gamma = 1/2 - alpha_m + alpha_f, else 1.
 
-Stability.  A step multiplies the free motions of a mode q'' + c q' + omega^2 q = 0 by the roots z of
+Stability of a mode, y = h^2 omega^2.  With A = 1 - 2 alpha_m, F = 1 - 2 alpha_f, g = 2 gamma - 1,
+e = g + 2 eta - 1, b = 4 beta - 2 gamma - 2 eta + 1 and X = 2 c h, none of
 
-    (z - 1)^2 (alpha_m + (1 - alpha_m) z) + (alpha_f + (1 - alpha_f) z) [ c h (1 - gamma + gamma z)(z - 1)
-        + y (beta z^2 + (eta + gamma - 2 beta) z + 1 - eta - gamma + beta) ] = 0,   y = h^2 omega^2
+    p3 = 4 A + F (b y + X g),   p2 = 4 + b y + X g + F (e y + X),   p1 = (e + F) y + X,   p2 p1 - p3 y
 
-(from the equations above with q, v, a ~ z^n).  With z = (1 + s)/(1 - s), A = 1 - 2 alpha_m, F = 1 - 2
-alpha_f, g = 2 gamma - 1, e = g + 2 eta - 1, b = 4 beta - 2 gamma - 2 eta + 1 and X = 2 c h this is
-p3 s^3 + p2 s^2 + p1 s + y = 0,
-
-    p3 = 4 A + F (b y + X g),   p2 = 4 + b y + X g + F (e y + X),   p1 = (e + F) y + X,
-
-stable if none is below zero and p2 p1 >= p3 y (Routh and Hurwitz).  For eta = 1/2, e = g.  Without damping
-all four conditions are then linear in y,
-
-    4 A + F b y,   4 + (b + F g) y,   (g + F) y,   4 (g + F - A) + g (b + F g + F^2) y   >= 0,
-
-hence the limit.  For Newmark's method (A = F = 1) it is y <= 1/(gamma/2 - beta), and none if 2 beta >= gamma
->= 1/2.  Other methods of order 2 have none if alpha_m <= alpha_f <= 1/2 and beta >= 1/4 + (alpha_f -
-alpha_m)/2.  This is linear theory: a contact that opens and closes can feed energy even to an unconditionally
-stable method (``studies.methods.stability``).  No step is refused for that.
+may be negative.  For eta = 1/2 and c = 0 they are linear in y, with 4 (g + F - A) + g (b + F g + F^2) y for
+the last: `limit`.  Derivation: ``docs/theory/steps.md``.  This is linear theory: a contact that opens and
+closes can feed energy even to an unconditionally stable method (``studies.methods.stability``).  No step is
+refused for that.
 """
 
 from __future__ import annotations

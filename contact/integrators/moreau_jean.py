@@ -8,31 +8,17 @@ towards the stop, d its penetration, p the percussion [N s] and e = e(U_n) the r
     0 <= p  and  U_{n+1} + e U_n <= 0,  one of them zero,  if  d_n + (h/2) U_n >= 0;   p = 0 otherwise
 
 (J. J. Moreau, in Nonsmooth Mechanics and Applications, CISM 302 (1988), 1; M. Jean, J. J. Moreau, Proc.
-Contact Mechanics Int. Symp., Lausanne 1992, 31; V. Acary, B. Brogliato, Numerical Methods for Nonsmooth
-Dynamical Systems, Springer 2008).  With D = 1 + theta h c + theta^2 h^2 omega^2 per mode and v* the velocity
-without percussion, v_{n+1} = v* - phi p/D, and p = max(0, (U* + e U_n) / sum phi^2/D) in closed form.
+Contact Mechanics Int. Symp., Lausanne 1992, 31).  With D = 1 + theta h c + theta^2 h^2 omega^2 per mode and
+v* the velocity without percussion, v_{n+1} = v* - phi p/D, and p = max(0, (U* + e U_n) / sum phi^2/D).
 
 With a = f this is the ``nonsmooth_generalised_alpha`` method of alpha_m = alpha_f = 0, gamma = theta, beta =
 theta^2, but for a weight eta = theta in place of the 1/2 in its positions.  Both have one time loop:
 
     q_{n+1} = q_n + h v_n + h^2 ((eta - beta) a_n + beta a_{n+1}) + h eta w,     w = -phi p.
 
-Order: an impact is late or early by a fraction of a step, so 1 after an impact; before one, 2 for theta = 1/2
-and 1 otherwise.  Stability: ``generalised_alpha``.  A mode with eigenvalues lambda does not grow if
-2 Re(lambda) + h |lambda|^2 (1 - 2 theta) <= 0, i.e. always for theta >= 1/2.
-
-Energy (V. Acary, Z. Angew. Math. Mech. 96 (2016) 585): without damping and drive
-
-    E_{n+1} - E_n = (1/2 - theta) (|v_{n+1} - v_n|^2 + |omega (q_{n+1} - q_n)|^2)
-                    - p (theta U_{n+1} + (1 - theta) U_n),
-
-so theta = 1/2 keeps the energy to rounding when e = 1 and loses p (1 - e) U_n/2 otherwise; no impact gains
-any if theta <= 1/(1 + e), no flight if theta >= 1/2.
-
-Penetration: the stop acts at velocity level, so a tip that is behind it stays behind.  The test sees a
-touch up to half a step early or late.  At a grid point the tip can be h U/2 behind the stop after an impact,
-h U if e = 0; this does not grow while the contact lasts.  A tip that leaves from behind the stop may be
-struck once more, by less than a step's change of velocity: such a touch has an approach below zero.
+The order is 1 after an impact; before one, 2 for theta = 1/2 and 1 otherwise.  The stop acts at velocity
+level: a tip that is behind it stays behind.  A tip that leaves from there may be struck once more, by less
+than a step's change of velocity: such a touch has an approach below zero.  Energy: ``docs/theory/steps.md``.
 
 The path of the step has its corner at t_n + (1 - theta) h, where q = q_n + (1 - theta) h v_n: there the
 impact is dated, from v_n to v_{n+1}, so that Newton's law holds for what is written down.

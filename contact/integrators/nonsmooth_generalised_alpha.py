@@ -12,16 +12,11 @@ the percussion p are as in ``moreau_jean``:
 constraint at velocity level and the whole contact force in the percussion).  The acceleration a is the smooth
 one and is carried across impacts.  With D as in ``generalised_alpha``, v_{n+1} = v* - E phi p,
 
-    E = 1 - (1 - alpha_f) gamma h (c + h omega^2/2) / D
-      = (1 - alpha_m + (1 - alpha_f) (beta - gamma/2) h^2 omega^2) / D > 0,
+    E = (1 - alpha_m + (1 - alpha_f) (beta - gamma/2) h^2 omega^2) / D > 0,
 
-and p = max(0, (U* + e U_n) / sum E phi^2) in closed form.
-
-alpha_m, alpha_f, beta, gamma follow from rho, the factor by which a step damps infinite frequencies
-(``chung_hulbert``).  rho = 1 is the scheme of Moreau and Jean with theta = 1/2, and keeps the energy when
-e = 1; on the energy for smaller rho see V. Acary, Z. Angew. Math. Mech. 96 (2016) 585.  Order 2 in smooth
-motion, 1 after an impact, whose instant is known to half a step; stable for any step.  A tip that is behind
-the stop stays behind, as with ``moreau_jean``.
+and p = max(0, (U* + e U_n) / sum E phi^2).  alpha_m, alpha_f, beta, gamma follow from rho, the factor by
+which a step damps infinite frequencies (``chung_hulbert``).  Order 2 in smooth motion, 1 after an impact,
+whose instant is known to half a step; stable for any step.
 """
 
 from collections.abc import Callable

@@ -7,34 +7,13 @@ F is the flow of the driven spring without the stop, K the contact acting on vel
 (``contact.integrators.splitting_step``), so that the error is that of the composition and vanishes off the
 stop.  Sources: G. Strang, SIAM J. Numer. Anal. 5 (1968) 506; S. Blanes, P. C. Moan, J. Comput. Appl. Math.
 142 (2002) 313, the six-stage method of order 4 for second-order equations that begins with a kick.
-At equal numbers of kicks its error in a contact that stays closed (a free body on a spring) is 1/140 of that
-of M. Suzuki's five steps of order 2 (Phys. Lett. A 146 (1990) 319) and 1/420 of that of H. Yoshida's three
-(Phys. Lett. A 150 (1990) 262), at alike limits of stability.
-
-Order in a collision.  The expansions of the error need derivatives of the force that do not exist at d = 0.
 A step over a touch at which the force grows as d^p adds an error of order h^(p + 1), whatever the method.
 
-    law                                       order 2     order 4
-    Hertz (p = 3/2)                           2           2.5
-    linear (p = 1)                            2           2
-    linear with a dashpot (a jump, p = 0)     1           1
-
-So order 4 gains where contacts are long against the step, little in short collisions.  The energy of a
-lossless motion does not drift in flight or in a contact that stays closed, since the method is symplectic.
-At every touch and release it makes a jump of order h^(p + 1), of either sign: over many contacts it performs
-a random walk, whose width grows with the square root of their number.
-
-Limit of stability of a contact that stays closed, N = k d + c d'.  A step is then a linear map M of (u, v),
-stable as long as no eigenvalue lies outside the unit circle.  Each kick adds a matrix of rank one times k,
-and the first and the last are one kick, so that
-
-    det(M(k) + I)  and  det(M(k) - I)  are polynomials in k of degree s, the number of sub-flows,
-
-known from s + 1 values.  At their lowest positive root an eigenvalue passes -1 or 1.  At order 2 without
-damping it is 1/k = h sum phi^2 tan(omega h/2)/(2 omega), for h -> 0 the limit of central difference on a free
-body of mass 1/Phi: the frequencies of the spring itself set no limit.  Order 4 first fails in a narrow band,
-h sqrt(k Phi) = 3.163 to 3.169 for a free body, by a growth of 1.0024 a step, and then from 5.03 on.  The
-lower value is the limit.
+Limit of stability of a contact that stays closed, N = k d + c d'.  A step is then a linear map M(k) of (u,
+v), and det(M + I) and det(M - I) are polynomials in k of degree s, the number of sub-flows, known from s + 1
+values.  At their lowest positive root an eigenvalue passes -1 or 1.  Derivation: ``docs/theory/steps.md``.
+Order 4 first fails in a narrow band, h sqrt(k Phi) = 3.163 to 3.169 for a free body, by a growth of 1.0024 a
+step, and then from 5.03 on.  The lower value is the limit.
 
 With damping, and beyond omega h = pi, pairs may leave the circle below that root: beyond pi near the
 resonances of step and contact, theta_j + theta_k = 2 pi m.  A search finds the first k there at which the

@@ -6,16 +6,13 @@ during which displacements and drive stand still:
     A:  u' = v, v' = -c v - omega^2 u       B:  u' = 0,  v' = -phi N(d, r),   r = sum phi v + x_s'(t)
 
 with the deviations u, v from the steady motion, x_s its tip displacement, and N as in ``contact.laws``.  A
-step of length h is exp(b_0 h B) exp(a_1 h A) exp(b_1 h B) ... exp(a_s h A) exp(b_s h B).
+step of length h is exp(b_0 h B) exp(a_1 h A) exp(b_1 h B) ...  exp(a_s h A) exp(b_s h B).  With N linearised
+about the rate r_0 at the start of a kick of length t, N = N_0 + B (r - r_0), and Phi = sum phi^2,
 
-Along phi the tip rate obeys r' = -Phi N(d, r) in B, Phi = sum phi^2, at fixed d.  With N linearised about the
-rate r_0 at the start of a kick, N = N_0 + B (r - r_0), B = dN/dd',
+    impulse J = N_0 (1 - exp(-B Phi t)) / (B Phi),   v -> v - phi J      (J = N_0 t for B = 0).
 
-    N(t) = N_0 exp(-B Phi t),   impulse J = N_0 (1 - exp(-B Phi t)) / (B Phi),   v -> v - phi J
-
-(J = N_0 t for B = 0).  This is B exactly for a force that is linear in the rate, as with all laws of the
-package.  N keeps its sign, so that max(0, k d + c d') stays where it is within a kick.  For any other force a
-kick is in error by h^3 d^2N/dd'^2: order 2 remains, order 4 becomes 2.  The energy given to the stop is
+This is exact for a force that is linear in the rate, as with all laws of the package.  For any other force
+a kick is in error by h^3 d^2N/dd'^2: order 2 remains, order 4 becomes 2.  The energy given to the stop is
 J (r + r - Phi J) / 2.
 
 Within a step the state at the fraction x is that of a step of length x h.  This interpolation meets the grid

@@ -4,10 +4,8 @@ A step runs over the variable s of its series, which hold P = N dt/ds, the rate 
 
     work = integral of P d' ds,   impulse = integral of P ds,   N = P/q,   dN/ds = (P' q - P q')/q^2,
 
-and the largest force lies at an end or where P' q - P q' falls through zero.  The integrals are sums over the
-nodes of Gauss's rule.  The same values of N show every maximum: two nodes are less than half a radian of the
-fastest mode apart, and so are a node and an end.  A maximum that may exceed the largest force so far is then
-found to rounding.
+as sums over the nodes of Gauss's rule.  The largest force lies at an end or where P' q - P q' falls through
+zero between two of these nodes (``docs/theory/contact.md``).
 """
 
 import numpy as np

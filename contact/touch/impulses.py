@@ -5,14 +5,10 @@ velocity over stop i that a unit impulse at stop j takes away.  Under Moreau's l
 
     p >= 0,    d'+ <= -e d'-,    p (d'+ + e d'-) = 0,    d'+ = d'- - G p
 
-(J. J. Moreau, Unilateral contact and dry friction in finite freedom dynamics, in: Nonsmooth Mechanics and
-Applications, CISM 302, Springer 1988, 1-82).  The velocities after it are unique.  So are the impulses if the
-rows of W are independent, or else only their sums.  A stop that is met can get no impulse at all.
-
-In a sequence one stop after the other acts by its own restitution, always that with the largest velocity
-towards it, and of equals the first, until none is met any more.  Bodies in a row pass on a shock in this way.
-
-A restitution that depends on the speed has its value at the velocity at which the stop is met.
+(J. J. Moreau, in: Nonsmooth Mechanics and Applications, CISM 302, Springer 1988, 1-82).  In a sequence one
+stop after the other acts by its own restitution, always that with the largest velocity towards it, and of
+equals the first, until none is met any more.  ``docs/theory/several.md`` says what is unique.  A restitution
+that depends on the speed has its value at the velocity at which the stop is met.
 
 The same complementarity decides over accelerations which points stay at rest on their stops.
 """

@@ -6,21 +6,14 @@ The impulse of the stop acts on the tip alone, so that the modal velocities jump
 
 which sends the tip velocity x' to -e x' (``NewtonRestitution``).  If e depends on x', low hops have its value
 at the lowest speed.  Let an impact leave the tip with velocity -w while it is accelerated towards the wall
-with a > 0.  It hops to the height h = w^2/(2a), and with constant e the next flights last 2w/a, 2ew/a, ...,
-and their sum W = 2w/(a(1 - e)) is finite.  If a changes, a speed v is multiplied by (a/a_0)^(1/3) too (v^3/a
-is the adiabatic invariant of elastic hops), and the hops end at the T with
+with a_0 + j t, a_0 > 0, and modal damping takes b w off a speed w in a unit of time.  Its hops end after
 
-    integral from 0 to T of (a/a_0)^(2/3) dt = W.
+    T = W (1 - (j + a_0 b/2) W/(3 a_0)),      W = 2 w/(a_0 (1 - e)),
 
-In a free flight |a - a_0| <= J T, J the bound of the jerk; the push of the wall on the modes adds to a.  With
-J W << a, T is close to W: the hops end before the pull does.  For a = a_0 + j t and modal damping that takes
-b w off a speed w in a unit of time, to first order in j and b and for any e,
-
-    T = W (1 - (j + a b/2) W/(3 a)).
-
-Hops so low that rounding decides over them then change into a stay at once.  The mean force of hops is the
-force that holds the tip, so that the modes differ from their motion under the hops by h.  The impulse that
-takes the speed w off takes the energy w^2/(2 sum phi^2), which the hops would lose together.
+to first order in j and b.  Derivation: ``docs/theory/laws.md``.  In a free flight |a - a_0| <= J T, J the
+bound of the jerk; the push of the wall on the modes adds to a.  With J W << a, the hops end before the pull
+does.  Hops so low that rounding decides over them then change into a stay at once.  The impulse that takes
+the speed w off takes the energy w^2/(2 sum phi^2), which the hops would lose together.
 
 In a stay (regime SUSTAINED) the tip is held by the force that makes d'' = 0, until that force would pull; the
 series is that of ``contact.touch.time_series``.

@@ -4,29 +4,26 @@
     PowerContact, c > 0           x = (p-1)/2, y = (p+1)/2; the force is cut at zero
     PowerContact, c = 0           x = p, y = 0
 
-The force has no Taylor series at d = 0, where every contact begins and ends.  Let m be the least number for
-which m x and m y are whole.  Take rho = d^(1/m) as an unknown of its own, and a variable sigma that runs
-slowly while the contact is shallow.  With l = m x + m - 1,
+Let m be the least number for which m x and m y are whole.  With rho = d^(1/m), a variable sigma that runs
+slowly while the contact is shallow, and l = m x + m - 1,
 
     dt/dsigma = rho^(m-1),  drho/dsigma = d'/m,  du/dsigma = rho^(m-1) v,
     dv/dsigma = rho^(m-1) (g - c_k v - omega^2 u) - phi_k P,    d' = sum phi_k v + x_s'(t),
     P = rho^(m-1) N = rho^l G,    G = k rho^(m y) + c d'.
 
-All right-hand sides are polynomials, so that the motion is analytic through touch and release, where rho
-changes sign (the substitution is Sundman's, Acta Math. 36 (1913) 105).  The coefficients of one order n
-follow from the orders before, by the sums
+The motion is analytic in sigma through touch and release: ``docs/theory/contact.md``.  The coefficients of
+one order n follow from the orders before, by the sums
 
     sum_j rho_(n-j) rho^i_j            for all powers of rho that are needed,
     sum_j rho^(m-1)_(n-j) x_j          for x = d', sin(w t), cos(w t), all u and all v.
 
 All these are columns of one array, computed eight at a time (``contact.machine.vector_loops``); for m = 2 one
-call computes both sums.  The term with the newest x_n is added separately, so that no sum waits for it.  The
-cost of a step is the number of modes times the square of the order.
+call computes both sums.  The term with the newest x_n is added separately, so that no sum waits for it.
 
 A step ends at the sigma at which the last terms, in every mode and in rho, reach `TOLERANCE` of the modal
-speeds.  The energy of a lossless contact is conserved to that order.  A step ends earlier at the release,
-where rho falls to zero.  A force that is cut lets go where G falls to zero, before d does (regime INSIDE).
-There the tip moves without a force, until G rises through zero again, or the tip leaves.
+speeds.  A step ends earlier at the release, where rho falls to zero.  A force that is cut lets go where G
+falls to zero, before d does (regime INSIDE).  There the tip moves without a force, until G rises through zero
+again, or the tip leaves.
 """
 
 import math

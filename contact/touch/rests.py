@@ -3,12 +3,11 @@
 A point with d = d' = 0 stays under a force N >= 0, or leaves with d'' < 0.  Accelerations decide as
 velocities do at an impact (``contact.touch.impulses``), with the pushes of all closed contacts.  Where
 neither N nor d'' differs from zero within rounding, the next derivatives decide in the same way: this is so
-at each release.  A point that all of them leave undecided stays.  If other stops hold it as well, it rests
-without a force.
+at each release.  A point that all of them leave undecided stays.
 
-Hops beside other contacts end as they do alone, see ``contact.touch.newton``.  The mean forces of hops are
-the forces N that would hold their points at rest beside the other contacts.  With the speeds w over these
-stops, and impulses that take them off, G p = w, the hops end after W = 2 w p/((1 - e) w N), if N is constant.
+Hops beside other contacts with speeds w over their stops, and impulses p that take these off, G p = w, end
+after W = 2 w.p/((1 - e) w.N), with the forces N that would hold the points at rest:
+``docs/theory/several.md``.
 """
 
 import numpy as np

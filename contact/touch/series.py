@@ -4,14 +4,10 @@ While the tip is in contact all modes are coupled through one number, the contac
 
     u_k'' = -c_k u_k' - omega_k^2 u_k + g_k - phi_k N(d, d'),   d(t) = sum_k phi_k u_k + x_s(t) - gap.
 
-The coefficients of a series follow from each other at a cost proportional to the number of modes.  No
-eigenvectors are needed, which are ill-conditioned for repeated or critically damped modes.  A step ends where
-the last terms reach rounding, so that only rounding error remains.
-
-Some orders of a series can vanish: under N = k d^3 and a free mass only every fourth is present.  The last
-two orders of the modes may then say too little, and the last orders of N limit the step as well.  Each order
-n estimates the radius of convergence by the root test, R_n = (A/|x_n|)^(1/n), and a step of R tol^(1/p)
-leaves terms of tol A at the order p.
+A step ends where the last terms reach rounding.  Each order n estimates the radius of convergence by the root
+test, R_n = (A/|x_n|)^(1/n), and a step of R tol^(1/p) leaves terms of tol A at the order p.  Some orders can
+vanish, so that the last two orders of the modes and the last orders of N limit the step
+(``docs/theory/contact.md``).
 """
 
 import math

@@ -2,12 +2,8 @@
 
 Stops that hold their point at rest (Newton's law) and stops that push it (laws that offer `coefficient`, see
 ``contact.touch``) may be closed in any number.  The modes obey the equations of ``contact.touch.time_series``
-under the sum of all forces.  Order n of each pushing force follows from the heights up to order n + 1.  Order
-n of the forces N at rest makes order n + 2 of the heights over these stops zero,
-
-    G N = pull,      G = W W^T,
-
-with the pull of the modes and of the pushing forces.  G is inverted when the set changes.
+under the sum of all forces.  Order n of the forces N at rest makes order n + 2 of the heights over these
+stops zero, G N = pull, G = W W^T (``docs/theory/several.md``).  G is inverted when the set changes.
 
 `Sets` keeps all series.  The heights over all stops are among them, so that a touch of an open stop is a root
 as a release is.  A stop that has just been left has a height whose first orders vanish: it is divided by s to

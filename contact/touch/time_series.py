@@ -2,10 +2,9 @@
 
     u[n+2] = ( g - c (n+1) u[n+1] - omega^2 u[n] - phi_k N[n] ) / ((n+1)(n+2))      (g for n = 0 only)
 
-A law computes N[n] from d[0] ... d[n + 1], then `extend` the next order of all modes, eight at a time
-(``contact.machine.vector_loops``).  The cost of a step is the number of modes times the order.  With order 30
-a step covers some three radians of the fastest mode.  Terms then grow to e^3 times the sum, which costs one
-digit in a mode that fast and nothing in the others.  A higher order would save work and lose more digits.
+A law computes N[n] from d[0] ...  d[n + 1], then `extend` the next order of all modes, eight at a time
+(``contact.machine.vector_loops``).  With order 30 a step covers some three radians of the fastest mode.  A
+higher order would save work and lose more digits (``docs/theory/contact.md``).
 """
 
 import math

@@ -1,19 +1,14 @@
-r"""Central difference: its limits in flight and in contact, and the energy it makes within them.
+"""Central difference: its limits in flight and in contact, and the energy it makes within them.
 
-Steps beyond h omega = 2 (centred damping), 2 (sqrt(1 + zeta^2) - zeta) (lagged damping) grow in flight, and
-stiffnesses beyond that of ``CentralDifference.critical_stiffness`` in a lasting contact; its file derives
-both.
+``CentralDifference.critical_stiffness`` is the limit of a lasting contact.  A free mass meets a spring in one
+short contact, x = h omega_c.  With a part s of a step inside at the first grid point and a part s' at the
+last one
 
-Stable is not exact. A free mass meets a spring, x = h omega_c. While the force acts, E = v_{n+1/2}^2/2 +
-omega_c^2 y_n y_{n+1}/2 is constant; with a part s of a step inside at the first grid point and a part s' at
-the last one
+    (v_out/v_in)^2 = (1 - x^2 s (1 - s)) / (1 - x^2 s' (1 - s')).
 
-    (v_out/v_in)^2 = (1 - x^2 s (1 - s)) / (1 - x^2 s' (1 - s')),
-
-between 1 - x^2/4 and its inverse. With W = 2 arcsin(x/2) the grid points in contact are y_j = h v (s sin jW +
-(1 - s) sin (j-1)W)/sin W, which gives the last of them above zero and the velocity out: one short contact
-may make any energy as x -> 2. If it takes a whole number n of steps, x = 2 sin(pi/(2n)), then s' = 1 - s and
-no step is wrong in its energy: a test of convergence with commensurate steps shows none of the error.
+With W = 2 arcsin(x/2) the grid points in contact are y_j = h v (s sin jW + (1 - s) sin (j-1)W)/sin W, which
+gives the last of them above zero.  If the contact takes a whole number n of steps, x = 2 sin(pi/(2n)), no
+step is wrong in its energy.  Derivation: ``docs/theory/steps.md``.
 """
 
 import math

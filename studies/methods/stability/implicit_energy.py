@@ -1,22 +1,15 @@
 """Implicit methods on a stop that is met and left: stable by linear theory, and what the energy does.
 
-In flight and in a contact that lasts, the methods tried here have no limit by linear theory (J. Chung, G. M.
-Hulbert, J. Appl. Mech. 60 (1993) 371).
+One contact of a free mass with a linear stop by the trapezoidal rule, with places of touch and release in
+their steps evenly distributed, changes the energy by the part
 
-One contact of a free mass m with a linear stop k by the trapezoidal rule (beta = 1/4, gamma = 1/2), which
-keeps the energy as long as the contact is closed. The step in which it opens, from penetration d to -d',
-gains k d d'/2, the step in which it closes loses as much; with d + d' = h v and the places u, u' of touch
-and release in their steps evenly distributed, (h w)^2 [u'(1-u') - u(1-u)] of the energy, w^2 = k/m, has
-the mean 0 and
+    rms = (h w)^2 / sqrt(90),      w^2 = k/m, for a contact of many steps                              (A)
 
-    rms = (h w)^2 / sqrt(90)                                                                           (A)
+and for h w -> infinity by
 
-for a contact of many steps. For h w -> infinity the force puts the tip on the stop at the end of a step:
-it leaves at speed (3 - 4u) v if u < 2/3 and (8u - 5) v if u > 2/3, anything from v/3 to 3 v, and
+    mean of ln(energy after/before) = (5/2) ln 3 - 2 = 0.7465.                                         (B)
 
-    mean of ln(energy after/before) = (3/4) [x ln x - x] from 1/3 to 3 = (5/2) ln 3 - 2 = 0.7465       (B)
-
-so that the energy grows e-fold in less than two contacts, whatever the step.
+Derivation: ``docs/theory/steps.md``.
 """
 
 import math

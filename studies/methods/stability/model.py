@@ -12,7 +12,7 @@ the largest modulus of the slopes' eigenvalues in each step.  A method is called
 more than the rounding of the differences.  Two eigenvalues that meet at -1, at h omega = 2 (1 + e) for
 central difference, leave the circle by sqrt(8 e): the limit is found to e = 1e-15.
 
-Theory is the limit by which the method itself refuses a step (``critical_stiffness``, derived at the head of
+Theory is the limit by which the method itself refuses a step (``critical_stiffness``, derived in
 its file); tests hold that against the frequencies of the closed contact and against closed forms.
 
 **One short contact** of a free mass with a linear stop (`energy_after`).  Nothing depends on the units: with
