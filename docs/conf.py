@@ -67,7 +67,7 @@ sphinx_gallery_conf = {
     "gallery_dirs": ["examples"],
     "filename_pattern": r"\.py$",
     "image_scrapers": ("films", "matplotlib", "pyvista"),
-    "within_subsection_order": "FileNameSortKey",
+    "within_subsection_order": "films.ReadingOrder",
     "abort_on_example_error": True,
     "image_srcset": ["2x"],
     "show_signature": False,

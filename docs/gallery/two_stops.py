@@ -39,7 +39,7 @@ amplitudes = np.linspace(2e-3, 9.2e-3, 73)
 found = [motion(amplitude).impacts for amplitude in amplitudes]
 speeds = [[impacts.approach[impacts.stop == k][-1] for k in (0, 1)] for impacts in found]
 
-figure, (left, right) = plt.subplots(1, 2, figsize=(9.5, 4.2), layout="constrained")
+figure, (left, right) = plt.subplots(1, 2, figsize=(8.0, 4.4), layout="constrained")
 left.plot(34 * times - 398, 1e3 * small.oscillator.tip(small.displacement), "k")
 left.plot(34 * times - 398, 1e3 * large.oscillator.tip(large.displacement), color="0.55", linestyle="--")
 left.axhspan(8, 10, color="#0072B2", alpha=0.3)
