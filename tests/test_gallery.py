@@ -92,9 +92,8 @@ def matrices_of_your_own(found):
         return [*y[8:], *(base * np.sin(w * t) - square * (y[:8] + 4e-5 * y[8:]) - push)]
 
     other = solve_ivp(rate, (0, times[-1]), np.zeros(16), "DOP853", times, rtol=1e-9, atol=1e-12).y[:8]
-    assert found["frame"].heights(found["motion"].displacement[:1001]) + gaps == approx(
-        (rows @ other).T, abs=1e-8
-    )
+    ours = found["frame"].heights(found["motion"].displacement[:1001]) + gaps
+    assert ours == approx((rows @ other).T, abs=1e-8)
 
 
 def bands_of_the_map(found):
@@ -106,11 +105,12 @@ def bands_of_the_map(found):
 
 
 def strange_attractor(found):
-    strobed, state, apart, rates = found["strobed"], found["start"], np.array([[0], [1e-8]]), []
-    for _ in range(2000):
-        near = replace(state, displacement=state.displacement + apart[0], velocity=state.velocity + apart[1])
-        state, near = (strobed.orbit(one, 1).end for one in (state, near))
-        apart = np.array([near.displacement - state.displacement, near.velocity - state.velocity])
+    strobed, here, rates = found["strobed"], found["start"], []
+    apart = 1e-8 * np.eye(2)[1]
+    for _ in range(2000):  # two motions side by side, set back to the same distance at each strobe
+        there = replace(here, displacement=here.displacement + apart[0], velocity=here.velocity + apart[1])
+        here, there = (strobed.orbit(one, 1).end for one in (here, there))
+        apart = np.append(there.displacement - here.displacement, there.velocity - here.velocity)
         rates.append(np.log(1e8 * np.linalg.norm(apart)))
         apart *= 1e-8 / np.linalg.norm(apart)
     assert found["exponents"].largest == approx(np.mean(rates), abs=0.1)

@@ -24,7 +24,8 @@ spring = ImpactOscillator(
 print(f"The tip grazes the stop when the base moves by {1e3 * spring.grazing_amplitude():.3f} mm.")
 
 # %%
-# Both start from the steady motion that the spring would have without a stop.  The later part is drawn.
+# Both simulations start from the steady motion that the spring would have without a stop.  The later part
+# is drawn.
 times = spring.period * np.linspace(40, 52, 3001)
 motions = {}
 for excess in (-1e-3, 1e-3):

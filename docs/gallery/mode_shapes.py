@@ -8,7 +8,7 @@ the ball moves along the legs only.  A base that moves sideways excites the sway
 """
 
 # %%
-# The files are for ParaView.  Here pyvista reads them back, and a temporary folder holds them meanwhile.
+# Two functions write files for ParaView.  Here pyvista reads these files back from a temporary folder.
 from pathlib import Path
 from tempfile import TemporaryDirectory
 

@@ -3,12 +3,12 @@ One collision
 =============
 
 An impact excites the higher modes of a spring.  Its tip then leaves fast and oscillates about the motion of
-the lowest mode, which leaves much more slowly than it came.  A restitution, a time delay and a kick compare
-mode 1 before the collision with mode 1 after it, both continued as if there were no stop.
+the lowest mode, which leaves much more slowly than it came.  Restitution, time delay and kick compare mode 1
+before and after the collision.  Both motions are continued as if there were no stop.
 """
 
 # %%
-# A brass U carries a ceramic ball, 11.88 mm from a steel plate.  Hertz's law gives the two 9.6e9 N/m^1.5.
+# A brass U carries a ceramic ball, 11.88 mm from a steel plate, with a Hertz stiffness of 9.6e9 N/m^1.5.
 from dataclasses import replace
 
 import matplotlib.pyplot as plt
@@ -32,7 +32,7 @@ hit = collisions(simulate(beam, start, periods=3), unfinished="drop")[0]
 print(f"restitution {hit.restitution:.2f}, delay {1e3 * hit.delay:.2f} ms, kick {hit.kick:.2f}")
 
 # %%
-# A stop out of reach lets a motion continue.  For mode 1 alone, all other modes get their steady motion.
+# The free motions have a stop out of reach.  For mode 1 alone, the others are reset to their steady motion.
 times = hit.time + np.linspace(-0.4e-3, 0.8e-3, 1201)
 free = replace(beam, stop=replace(stop, gap=0.05))
 motion, incoming = (simulate(one, start, periods=2, times=times) for one in (beam, free))

@@ -25,8 +25,9 @@ spring = ImpactOscillator(
 strobed = StroboscopicMap(oscillator=spring)
 
 # %%
-# The amplitude is raised and lowered in steps of 0.04 %.  Each step starts from the last state of the one
-# before.  The transient that this makes must not touch the stop: the last step below grazing is at -0.036 %.
+# The amplitude is raised and lowered in steps of 0.04 %.  Each step starts from the last state of the step
+# before.  The steps are so small that the transient of a step does not touch the stop: the last one below
+# grazing is at -0.036 %.
 excesses = np.linspace(-0.01956, 0.00724, 68)
 record = dict(observe=strobed.tip, settle_cycles=2000, record_cycles=8)
 up = orbit_diagram(strobed, excesses, strobed.at(excesses[0]).steady(), **record)

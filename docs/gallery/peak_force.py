@@ -4,8 +4,8 @@ Peak force
 
 A steel cantilever is shaken at 15 Hz, a little below its lowest frequency, beside a rubber buffer.  The
 largest contact force in the first eight drive periods depends on the gap and on the base amplitude.  It is
-zero where the stop is out of reach.  Elsewhere it is mostly larger with a larger base amplitude, but not
-smoothly: each impact depends on the phase of the ringing that earlier impacts have left.
+zero where the stop is out of reach.  Elsewhere it mostly grows with the base amplitude, but not smoothly.
+Each impact depends on the phase of the ringing that earlier impacts have left.
 """
 
 # %%
@@ -28,7 +28,8 @@ def motion(gap, amplitude, times=None):
 
 
 # %%
-# Each cell of the map is a motion of its own.  The force is the maximum of a series, not of samples.
+# Each square of the picture is a simulation of its own.  Its force is the maximum of the power series of the
+# contact, not of samples.
 gaps, amplitudes = np.linspace(0.25e-3, 9.25e-3, 37), np.linspace(0.05e-3, 2e-3, 40)
 force = np.array([[motion(gap, z).impacts.peak_force.max(initial=0.0) for z in amplitudes] for gap in gaps])
 i, j = np.unravel_index(force.argmax(), force.shape)
