@@ -4,6 +4,8 @@ Without a chosen method the exact one is taken (``contact.integrators``).  Its e
 ``studies.methods.work_precision`` compares its cost with that of the other methods and of outside solvers.
 """
 
+from inspect import signature
+
 import numpy as np
 
 from beam.parameters import InvalidType, require, require_kind, suspect
@@ -25,7 +27,8 @@ def _method(method: Integrator | str | None, oscillator: ImpactOscillator) -> In
         try:
             chosen = kind()
         except TypeError:
-            words = f"method is {method!r}, which needs a step; give {kind.__name__}(step=...)"
+            needed = next(iter(signature(kind).parameters))
+            words = f"method is {method!r}, which needs {needed}; give {kind.__name__}({needed}=...)"
             raise InvalidType(words) from None
     given: Integrator = require_kind("method", chosen, Integrator, "an Integrator or the name of one")
     for law in (stop.law.code for stop in oscillator.stops):
