@@ -4,7 +4,7 @@ Which period appears at grazing
 
 Above grazing the motion often jumps to an orbit p_m, which has one impact in m drive periods.  The drive
 frequency decides on m.  Nordmark's map has a band of frequencies for each m, and the bands leave no gaps.
-One mode with its exact motion makes the same jump, but mostly in the upper part of the band.
+The exact motion of one mode makes the same jump, but mostly in the upper part of the band.
 """
 
 # %%

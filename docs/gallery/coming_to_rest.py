@@ -2,9 +2,10 @@
 Coming to rest on a stop
 ========================
 
-A constant force presses a spring against its stop.  A slowly shaken base pulls the tip off once in each drive
-period.  The tip falls back and bounces.  The low hops become shorter by the restitution each time, so that
-infinitely many end in a finite time.  Then the tip rests on the stop, until the base pulls it off again.
+A constant force presses a spring against its stop.  A slowly shaken base pulls the tip off once in each
+drive period.  The tip falls back and bounces.  Each low hop lasts 0.7 times as long as the one before,
+where 0.7 is the restitution, so that infinitely many end in a finite time.  Then the tip rests on the stop,
+until the base pulls it off again.
 """
 
 # %%
@@ -25,7 +26,7 @@ spring = ImpactOscillator(
 impacts = simulate(spring, periods=5).impacts
 
 # %%
-# A touch of the kind `STAY` is a rest.  It begins after all hops, also after the ones below rounding.
+# A touch of the kind `STAY` is a rest.  It begins after the last hop, however low.
 rests = np.flatnonzero(impacts.kind == ImpactKind.STAY)
 before, after = rests[-2:]
 leaves, start, end = impacts.end[before], impacts.start[before], impacts.end[after]
@@ -35,7 +36,7 @@ print(f"The tip leaves, hits the stop {landings.size} times, and rests for {impa
 print("Last hops over the hops before them:", *(hops[-4:] / hops[-5:-1]).round(4))
 
 # %%
-# Dots are impacts, and bars are rests.  The line of the small panel falls by the restitution 0.7 in each hop.
+# Dots are impacts, and bars are rests.  In the small panel each hop is 0.7 times as long as the one before.
 times = np.linspace(leaves - 0.02, end + 0.02, 4001)
 motion = simulate(spring, periods=6, times=times)
 figure, axes = plt.subplots(figsize=(6.4, 4.6), layout="constrained")

@@ -9,7 +9,7 @@ loop is a line.
 """
 
 # %%
-# The ball is a mode of frequency zero, with the shape value 1/sqrt(mass).
+# The free ball is a mode of frequency zero; its mass-normalised shape is 1/sqrt(mass) at the contact.
 import matplotlib.pyplot as plt
 import numpy as np
 from scipy.optimize import brentq
@@ -33,7 +33,7 @@ def impact(law):
 
 # %%
 # The stiffness k of each law follows from the greatest depth, 50 µm.  A touch ends when the ball is back at
-# depth zero.  The linear stop and the 3/2 power stop have released the ball before that.
+# depth zero.  The force of the linear stop and of the 3/2 power stop vanishes a little before.
 from contact import HertzContact, HuntCrossley, LinearContact, PowerContact
 
 fitted = dict(restitution=e, mass=mass)

@@ -4,7 +4,8 @@ Matrices of your own
 
 Mass and stiffness matrices of any program make a modal model.  Here scikit-fem makes them for a steel frame
 with clamped feet.  The base is shaken sideways.  The roof can hit a stop on the right, and the left leg can
-hit one on the left.  Each point has a name and a row, which picks its motion from all unknowns.
+hit one on the left.  Each point has a name and a row of numbers.  The row
+times the unknowns is the displacement of the point.
 """
 
 # %%
@@ -38,7 +39,7 @@ model = ModalModel.from_matrices(M, K, C=4e-5 * K, points=points, base=1.0 * sid
 print("natural frequencies (Hz):", *model.frequencies_hz.round(1))
 
 # %%
-# The drive has 80 % of the lowest frequency.  Each touch has the number of its stop.
+# The drive frequency is 80 % of the lowest natural frequency.  Each touch has the number of its stop.
 law, drive = LinearContact(stiffness=1e6), HarmonicDrive(frequency=63, amplitude=4e-4)
 stops = Stop(gap=0.5e-3, law=law, at="roof"), Stop(gap=0.2e-3, law=law, at="leg", side=-1)
 frame, times = ImpactOscillator(model=model, stops=stops, drive=drive), np.linspace(0, 0.16, 4001)

@@ -3,12 +3,13 @@ Missed touches
 ==============
 
 A program that looks at the tip once in each time step can miss a short touch.  The exact method proves that
-it misses none.  Two other methods look for the first touch of 120 motions of a ringing beam.  One samples
-exact flights, as an article of 1996 did.  The other one is the method of central differences.
+it misses none.  Two other methods look for the first touch of 120 motions of a ringing beam.  One evaluates
+the exact motion at fixed instants, as an article of 1996 did.  The other one is the method of central
+differences.
 """
 
 # %%
-# Six modes of a steel strip ring.  At the start they have random phases.
+# Six modes of a steel strip are set vibrating, with random phases at the start.
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -28,7 +29,7 @@ def first_touch(start, method=None):
 
 
 # %%
-# A start must lie before the stop, and its motion must touch the stop.
+# Only starts in front of the stop are used, and only if the motion touches the stop later.
 phases = np.random.default_rng(1).uniform(0, 2 * np.pi, (400, 6))
 starts = [State(displacement=sizes * np.cos(p), velocity=sizes * model.omega * np.sin(p)) for p in phases]
 starts = [one for one in starts if beam.tip(one.displacement) < 3.5e-3 and first_touch(one) < period][:120]

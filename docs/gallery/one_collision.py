@@ -2,9 +2,9 @@
 One collision
 =============
 
-An impact excites the higher modes of a spring.  Its tip then leaves fast and oscillates about the motion of
-the lowest mode, which leaves much more slowly than it came.  Restitution, time delay and kick compare mode 1
-before and after the collision.  Both motions are continued as if there were no stop.
+An impact excites the higher modes of a spring.  The tip is fast afterwards and oscillates about the motion
+of the lowest mode, which moves away much more slowly than it approached.  Restitution, time delay and kick
+compare mode 1 before and after the collision.  Both motions are continued as if there were no stop.
 """
 
 # %%
@@ -43,7 +43,7 @@ alone = replace(start, displacement=q, velocity=v, time=times[after])
 outgoing = simulate(free, alone, periods=1, times=times[after:])
 
 # %%
-# The delay lasts from the upward crossing of the surface by one motion to the downward crossing by the other.
+# The delay lasts from the upward crossing by mode 1 before the collision to its downward crossing after it.
 figure, axes = plt.subplots(figsize=(7.5, 4.5), layout="constrained")
 blue, red = "#0072B2", "#D55E00"
 for k, one, colour, line in ((0, incoming, blue, "--"), (after, outgoing, blue, "-"), (0, motion, red, "-")):

@@ -36,7 +36,7 @@ i, j = np.unravel_index(force.argmax(), force.shape)
 print(f"The largest force is {force[i, j]:.0f} N, at a gap of {1e3 * gaps[i]:.2f} mm.")
 
 # %%
-# A stop out of reach gives the free motion, which is proportional to the base amplitude.
+# With the stop out of reach the motion is free, and proportional to the base amplitude.
 free = motion(0.1, 1e-3, np.linspace(0, 8 / 15, 8001))
 factor = free.oscillator.tip(free.displacement).max() / 1e-3
 print(f"The free tip moves at most {factor:.2f} times as far as the base.")

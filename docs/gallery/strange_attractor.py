@@ -8,7 +8,7 @@ the mean rate at which neighbouring motions separate.  It is positive in chaos.
 """
 
 # %%
-# The drive of 24 Hz, near resonance, is twice as large as the grazing amplitude.
+# The base moves at 24 Hz, near resonance, with twice the grazing amplitude.
 import matplotlib.pyplot as plt
 
 from beam import single_mode
