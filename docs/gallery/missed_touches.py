@@ -4,8 +4,7 @@ Missed touches
 
 A program that looks at the tip once in each time step can miss a short touch.  The exact method proves that
 it misses none.  Two other methods look for the first touch of 120 motions of a ringing beam.  One evaluates
-the exact motion at fixed instants, as an article of 1996 did.  The other one is the method of central
-differences.
+the exact motion at fixed instants, as an article of 1996 did.  The other is central differences.
 """
 
 # %%
