@@ -6,8 +6,8 @@ neither N nor d'' differs from zero within rounding, the next derivatives decide
 at each release.  A point that all of them leave undecided stays.
 
 Hops beside other contacts with speeds w over their stops, and impulses p that take these off, G p = w, end
-after W = 2 w.p/((1 - e) w.N), with the forces N that would hold the points at rest:
-``docs/theory/several.md``.
+after about W = 2 w.p/((1 - e) w.N), with the forces N that would hold the points at rest.  This is exact if a
+single point hops and presses the others on: ``docs/theory/several.md``.
 """
 
 import numpy as np
