@@ -11,7 +11,6 @@ drive direction e
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from scipy.sparse import csr_array
@@ -19,11 +18,12 @@ from scipy.sparse.linalg import splu
 
 from .parameters import Array, require, require_array, require_kind, shown
 from .pieces import meshed_pieces, motion_at, shared_elements, tie_matrix, tied_matrices
+from .record import record
 from .spring import HELD, LeafSpring, Readout, Tip
 from .strip_element import PieceMesh
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@record
 class Discretization:
     """A leaf spring in n_dofs degrees of freedom with its supports: M x'' + K x = -b z'' + tip * force.
 

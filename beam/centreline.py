@@ -11,15 +11,16 @@ strip lies along z.
 """
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .parameters import Array, InvalidValue, require, require_array, require_each, require_within
+from .record import record
 
 
-@dataclass(frozen=True, kw_only=True)
+@record(eq=True)
 class Straight:
     """A straight piece of a centreline.
 
@@ -48,7 +49,7 @@ class Straight:
         require_within("length", self.length, "m", above=0)
 
 
-@dataclass(frozen=True, kw_only=True)
+@record(eq=True)
 class Arc:
     """A circular arc of a centreline.
 
@@ -86,7 +87,7 @@ class Arc:
         return math.copysign(1.0 / self.radius, self.angle)
 
 
-@dataclass(frozen=True, kw_only=True)
+@record(eq=True)
 class Centreline:
     """A plane curve of pieces that are joined end to end with a common tangent.
 

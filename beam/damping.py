@@ -13,13 +13,14 @@ Each rule is a class with `decay_rates(modes)` [1/s], shape (n_modes,):
     MeasuredDecay       c_1 as measured; the others from one of the rules above, scaled with it or not
 """
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Protocol, runtime_checkable
 
 import numpy as np
 
 from .modes import Modes
 from .parameters import Array, require, require_kind, require_within
+from .record import record
 
 
 @runtime_checkable
@@ -31,7 +32,7 @@ class Damping(Protocol):
         ...
 
 
-@dataclass(frozen=True, kw_only=True)
+@record(eq=True)
 class StripDamping:
     """Internal friction of the strip and its glued layers.
 
@@ -44,7 +45,7 @@ class StripDamping:
         return modes.loss_factors() * modes.omega
 
 
-@dataclass(frozen=True, kw_only=True)
+@record(eq=True)
 class ConstantLossFactor:
     """One loss factor eta for all modes, c = eta omega [1/s].
 
@@ -72,7 +73,7 @@ class ConstantLossFactor:
         return self.loss_factor * modes.omega
 
 
-@dataclass(frozen=True, kw_only=True)
+@record(eq=True)
 class ConstantRatio:
     """One damping ratio zeta for all modes, c = 2 zeta omega [1/s].
 
@@ -117,7 +118,7 @@ class ConstantRatio:
         return 2.0 * self.ratio * modes.omega
 
 
-@dataclass(frozen=True, kw_only=True)
+@record(eq=True)
 class Rayleigh:
     """A damping matrix alpha M + beta K, which gives c = alpha + beta omega^2 [1/s].
 
@@ -147,7 +148,7 @@ class Rayleigh:
         return self.mass_coefficient + self.stiffness_coefficient * modes.omega**2
 
 
-@dataclass(frozen=True, kw_only=True)
+@record(eq=True)
 class MeasuredDecay:
     """The measured decay rate of the first coupled mode, and a rule for the other modes.
 

@@ -13,16 +13,17 @@ A mass m added at the tip mixes the modes. With q = V r,
 and phi' = V^T phi, Gamma' = V^T (Gamma + m phi). T and the decay rates are kept: all omega' are scaled.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from .modal_model import UNITS, ModalModel, Point
 from .parameters import Array, final, require, require_array, require_kind, require_whole, require_within
+from .record import record
 
 
 @final
-@dataclass(frozen=True, kw_only=True, eq=False)
+@record
 class ModalChange:
     """Derivatives of the four arrays of a `ModalModel` with respect to one parameter.
 

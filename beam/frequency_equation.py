@@ -19,7 +19,7 @@ over all modes: ``docs/theory/beam.md``.
 """
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -27,6 +27,7 @@ from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
 from .parameters import Array, require, require_array, require_kind, require_whole, require_within
+from .record import record
 from .spring import HELD, Support, two_supports
 
 #: Grid of beta L. Zeros lie about pi apart. Where the rotation of the tip resonates with a bending mode, two
@@ -40,7 +41,7 @@ POINTS_PER_HALF_WAVE = 12
 MOST_MODES = 2000
 
 
-@dataclass(frozen=True, kw_only=True)
+@record(eq=True)
 class UniformBeam:
     """A straight beam of constant section.
 
@@ -78,7 +79,7 @@ class UniformBeam:
             require(free or not value, name, f"is {value} {unit}; {words}")
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@record
 class ExactModes:
     """Exact modes of a `UniformBeam`, lowest first; rigid motions are not among them.
 

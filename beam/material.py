@@ -13,9 +13,9 @@ factors of ten with temperature and frequency.
 """
 
 import math
-from dataclasses import dataclass
 
 from .parameters import require_within, suspect
+from .record import record
 
 SLOWEST_WAVE, FASTEST_WAVE = 400.0, 20_000.0
 """Range of the speed of sound sqrt(E/rho) [m/s]: 450 in soft polyethylene, 3500 in brass, 18 000 in diamond.
@@ -24,7 +24,7 @@ GREATEST_LOSS = 3.0
 """Largest loss factor without a warning; the best damping polymers have 1 to 2."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@record(eq=True)
 class Material:
     """A linear elastic, isotropic solid.
 

@@ -26,7 +26,7 @@ with C the `static_compliance` [m/N] and M the lumped mass at the tip [kg]. Deri
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,6 +34,7 @@ from numpy.typing import NDArray
 from .exciter import modes_on_exciter
 from .parameters import final, require, require_kind, require_whole, require_within, shown, suspect
 from .point import Point, check_statics, row_of
+from .record import record
 from .residual_mode import residual_mode
 
 UNITS = {"omega": "rad/s", "decay_rate": "1/s", "phi": "kg^(-1/2)", "participation": "kg^(1/2)"}
@@ -45,7 +46,7 @@ STILL = 1e-9
 
 
 @final
-@dataclass(frozen=True, kw_only=True, eq=False)
+@record
 class ModalModel:
     """A structure as n_modes uncoupled oscillators that share one tip.
 

@@ -12,8 +12,6 @@ A mode with phi = Gamma = 0 is uncoupled, such as the breathing modes of a folde
 move against each other, the ball does not sideways. Derivation: ``docs/theory/beam.md``.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import eigh
@@ -23,6 +21,7 @@ from scipy.sparse.linalg import eigsh
 from .assembly import Discretization
 from .parameters import Array, InvalidValue, require_array, require_kind, require_whole
 from .pieces import motion_along
+from .record import record
 
 #: phi sqrt(m_total) and Gamma/sqrt(m_total) below this count as zero. Rounding in symmetric springs gives
 #: about 1e-9; a coupling that matters to a motion is far larger.
@@ -31,7 +30,7 @@ COUPLING_TOLERANCE = 1e-6
 DENSE_LIMIT = 900
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@record
 class ShapesAlong:
     """Mode shapes as vectors along the centreline.
 
@@ -55,7 +54,7 @@ class ShapesAlong:
     rotation: Array
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@record
 class Modes:
     """Mass-normalised modes of a leaf spring, lowest first.
 

@@ -12,7 +12,6 @@ of the coordinate.
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, ClassVar, TypeVar
 
@@ -23,6 +22,7 @@ from scipy.sparse import block_diag, csr_array
 
 from .centreline import Centreline
 from .parameters import Array, require, require_whole, shown
+from .record import record
 
 MOST_ELEMENTS = 100_000
 """Largest number of elements on a piece; beyond it rounding leaves no digits, and a slip fills the memory."""
@@ -34,7 +34,7 @@ QUADRATURE_ORDER = 2 * TANGENTIAL_DEGREE
 Field = Any  # values of a scikit-fem function at the quadrature points, with .grad and .hess
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@record
 class Piece(ABC):
     """One meshed piece: arc length `start` [m], `nodes` counted from there [m], curvature [1/m] and section.
 

@@ -1,15 +1,14 @@
 """A place of a structure: its motion in the modes, and its statics."""
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .parameters import final, require, require_array, require_within
+from .record import record
 
 
 @final
-@dataclass(frozen=True, kw_only=True, eq=False)
+@record
 class Point:
     """A place of a structure, with its motion in the modes and its statics.
 

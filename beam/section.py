@@ -22,19 +22,19 @@ The modulus is E, not E/(1 - nu^2): the strip is free to curl across its width. 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
 from .material import Material
 from .parameters import Array, require, require_kind, require_within
+from .record import record
 
 #: Terms of Saint-Venant's series; the remainder is below 1/(4 * 59^4) = 2e-8 of kappa.
 TORSION_TERMS = 30
 
 
-@dataclass(frozen=True, kw_only=True)
+@record(eq=True)
 class Layer:
     """A damping layer glued to a strip over its whole width.
 
@@ -65,7 +65,7 @@ class Layer:
         require_within("thickness", self.thickness, "m", above=0)
 
 
-@dataclass(frozen=True, kw_only=True)
+@record(eq=True)
 class StripSection:
     """A flat strip that bends about its width, bare or with a glued layer.
 
@@ -190,7 +190,7 @@ class StripSection:
         return float(eta @ energies / energies.sum())
 
 
-@dataclass(frozen=True, kw_only=True)
+@record(eq=True)
 class BeamSection:
     """A section of a beam by its stiffness and mass, such as a rod, a tube or a profile.
 

@@ -19,7 +19,7 @@ displacement read-out are components along that vector. A light beam reflected o
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 from typing import Any, Literal
 
@@ -27,6 +27,7 @@ import numpy as np
 
 from .centreline import Centreline
 from .parameters import require, require_array, require_each, require_kind, require_within, shown, suspect
+from .record import record
 from .section import BeamSection, StripSection
 
 Support = Literal["clamped", "pinned", "guided", "free"]
@@ -79,7 +80,7 @@ def check_strip(spring: Any, section: type | tuple[type, ...], axes: int) -> Non
     vars(spring).update(drive=tuple(part / size for part in spring.drive))
 
 
-@dataclass(frozen=True, kw_only=True)
+@record(eq=True)
 class Tip:
     """The body on the strip that meets the stop: a ball with its mount.
 
@@ -125,7 +126,7 @@ class Tip:
         require_within("rotary_inertia", self.rotary_inertia, "kg m^2", low=0)
 
 
-@dataclass(frozen=True, kw_only=True)
+@record(eq=True)
 class Readout:
     """A point of the strip where an instrument measures the motion.
 
@@ -153,7 +154,7 @@ class Readout:
         require(known, "quantity", f"is {self.quantity!r} [no unit]; valid: 'displacement', 'rotation'")
 
 
-@dataclass(frozen=True, kw_only=True)
+@record(eq=True)
 class LeafSpring:
     """A strip that follows a centreline between two supports.
 

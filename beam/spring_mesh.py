@@ -13,7 +13,6 @@ Where the drive runs along the strip, the ball lies outside the bend.
 """
 
 import math
-from dataclasses import dataclass
 from itertools import product
 from typing import Any
 
@@ -23,6 +22,7 @@ from scipy.spatial import ConvexHull
 
 from .modes import Modes, ShapesAlong
 from .parameters import Array, require_within
+from .record import record
 from .section import BeamSection, StripSection
 
 STRIP, LAYER, BALL = 0, 1, 2
@@ -31,7 +31,7 @@ BALL_POINTS = 300
 """Number of points on the sphere, a few degrees apart."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@record
 class SpringMesh:
     """The spring as a solid, with the motion of each of its points in each mode.
 

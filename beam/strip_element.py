@@ -15,7 +15,6 @@ the length of an element and L of the strip, but the energy summed from strains 
 to (L/h)^2 eps. Derivation: ``docs/theory/beam.md``.
 """
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -24,6 +23,7 @@ from scipy.sparse import csr_array
 
 from .parameters import Array
 from .pieces import TANGENTIAL_DEGREE, Field, Piece
+from .record import record
 from .section import BeamSection, StripSection
 
 
@@ -55,7 +55,7 @@ def inertia(u: Field, w: Field, v: Field, z: Field, p: Any) -> Field:
     return p.m * (u * v + w * z)
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@record
 class PieceMesh(Piece):
     """A piece that moves in the plane; its unknowns are u, w, w' at the nodes, then u inside the elements."""
 

@@ -16,11 +16,11 @@ derives the relation of the two pairs.
 """
 
 import math
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from beam.record import record
 from contact.flight.modal_flow import free_flow, propagate
 from contact.flight.numbers import INVERSE_OMEGA, Numbers
 from contact.flight.tip import tip_rounding
@@ -29,7 +29,7 @@ from contact.trajectory import ImpactKind
 from contact.virtual_motion import VirtualMotion
 
 
-@dataclass(frozen=True, kw_only=True)
+@record(eq=True)
 class Collision:
     """One approach of the tip to the stop, with all its impacts and their effect on mode 1.
 

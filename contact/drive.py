@@ -6,15 +6,15 @@ with amplitude Z [m] and frequency f [Hz]; strobes at t_n = n/f (letter 1996, Fi
 """
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
 from beam.parameters import final, require_array, require_within
+from beam.record import record
 
 
 @final
-@dataclass(frozen=True, kw_only=True)
+@record(eq=True)
 class HarmonicDrive:
     """Harmonic motion of the base, ``amplitude * sin(2 pi frequency t)``.
 

@@ -12,12 +12,12 @@ Under both laws the force vanishes only at d = 0.  The compiled part is ``contac
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
 from beam.parameters import final, require_within, suspect
+from beam.record import record
 from contact.laws import POWER, ContactLaw
 
 HERTZ_TIME = 0.8 * math.sqrt(math.pi) * 2.0757065006382507
@@ -30,7 +30,7 @@ GPa or MPa a modulus is far below."""
 
 
 @final
-@dataclass(frozen=True, kw_only=True)
+@record(eq=True)
 class HertzContact(ContactLaw):
     """Elastic contact of a ball: N = `stiffness` d^(3/2) for d > 0.
 
@@ -119,7 +119,7 @@ class HertzContact(ContactLaw):
 
 
 @final
-@dataclass(frozen=True, kw_only=True)
+@record(eq=True)
 class HuntCrossley(ContactLaw):
     """Hertz's law with dissipation: N = `stiffness` d^(3/2) (1 + `dissipation` d') for d > 0.
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 
 from beam.parameters import require
+from beam.record import record
 from contact.flight.clock import split_time
 from contact.flight.modal_flow import steady_motion
 from contact.flight.numbers import Numbers
@@ -20,7 +21,7 @@ CSV |= dict(impulse="N s", peak_force="N")
 """Columns of a table of touches and their units."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@record
 class Impacts:
     """The touches of the tip, in the order in which they began.
 

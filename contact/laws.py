@@ -17,13 +17,14 @@ Compiled code sees no objects: a law gives it a small integer, two numbers and a
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
 
 from beam.parameters import final, require_within
+from beam.record import record
 from contact.restitution import damping_ratio
 from contact.speed_table import SPEEDS, Points, SpeedFunction, raised, require_points, require_speeds, sampled
 
@@ -88,7 +89,7 @@ class ContactLaw:
 
 
 @final
-@dataclass(frozen=True, kw_only=True)
+@record(eq=True)
 class NewtonRestitution(ContactLaw):
     """Instantaneous impact: the tip leaves with -`local_restitution` times its approach velocity.
 
@@ -182,7 +183,7 @@ class NewtonRestitution(ContactLaw):
 
 
 @final
-@dataclass(frozen=True, kw_only=True)
+@record(eq=True)
 class LinearContact(ContactLaw):
     """Spring and dashpot at the stop: N = max(0, `stiffness` d + `damping` d') for d > 0.
 

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar
 
@@ -22,6 +22,7 @@ import numpy as np
 
 from beam import ModalModel
 from beam.parameters import InvalidValue, final, require, require_array, require_kind, require_within, shown
+from beam.record import record
 from contact.drive import HarmonicDrive
 from contact.flight.numbers import Numbers, numbers_of, stacked, with_drive
 from contact.laws import NewtonRestitution
@@ -31,7 +32,7 @@ from contact.stop import Stop, given_stops, only_stop_of, rows_of
 
 
 @final
-@dataclass(frozen=True, kw_only=True, eq=False, init=False)
+@record(init=False)
 class ImpactOscillator:
     """A modal spring on a moving base, with one stop or several.
 

@@ -1,19 +1,19 @@
 """The stop: a wall that rides on the base, at a distance `gap` from a point of the resting spring."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from beam import ModalModel
 from beam.parameters import InvalidType, final, require, require_each, require_kind, require_within, shown
+from beam.record import record
 from contact.laws import ContactLaw
 
 PARALLEL = 1e-12  # relative difference within which two stops are met by the same motion
 
 
 @final
-@dataclass(frozen=True, kw_only=True)
+@record(eq=True)
 class Stop:
     """A wall that a point of the spring can reach, with the law of its contact.
 

@@ -7,7 +7,7 @@ A modal state is a displacement q_k [kg^(1/2) m] and a velocity q_k' [kg^(1/2) m
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, fields
+from dataclasses import field, fields
 from enum import IntEnum
 from pathlib import Path
 
@@ -23,6 +23,7 @@ from beam.parameters import (
     require_within,
     shown,
 )
+from beam.record import record
 from contact.impacts import Impacts
 from contact.oscillator import ImpactOscillator
 
@@ -71,7 +72,7 @@ IMPACT, GRAZE, STAY, UNDER_WAY = map(int, ImpactKind)
 
 
 @final
-@dataclass(frozen=True, kw_only=True, eq=False)
+@record
 class State:
     """Modal displacement and velocity of a spring at a time, and its contact with the stop.
 
@@ -157,7 +158,7 @@ class State:
         return State(displacement=np.zeros(size), velocity=np.zeros(size))
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@record
 class Trajectory:
     """A motion of an oscillator: strobed states, sampled states, every impact, and the state at the end.
 

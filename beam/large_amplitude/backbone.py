@@ -16,17 +16,17 @@ are equal for b = (8/3) elastic/L^2 and a = -4 inertial/L^2. Derivation: ``docs/
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from itertools import dropwhile, takewhile
 
 from scipy.sparse.linalg import splu
 
 from ..centreline import Centreline
+from ..record import record
 from ..spring import LeafSpring
 from .finite_rotation import FiniteRotation
 
 
-@dataclass(frozen=True, kw_only=True)
+@record(eq=True)
 class Backbone:
     """The dependence of the frequency of mode 1 on its amplitude.
 

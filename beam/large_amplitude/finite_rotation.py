@@ -18,7 +18,6 @@ See ``docs/theory/beam.md``.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property, partial
 from typing import Any
 
@@ -30,6 +29,7 @@ from ..assembly import Discretization, assemble
 from ..modes import natural_modes
 from ..parameters import Array, require
 from ..pieces import Field
+from ..record import record
 from ..spring import LeafSpring
 from ..strip_element import bend, stretch
 
@@ -44,7 +44,7 @@ def _stretched(a: Array, b: Array) -> Array:
     return (a * (2.0 + a) + b**2) / (1.0 + np.hypot(1.0 + a, b))
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@record
 class FiniteRotation:
     """A leaf spring in n_dofs degrees of freedom, without damping: M x'' + f(x) = -b z'' + tip * force.
 

@@ -14,7 +14,7 @@ i k w + lambda replaces i k w (G. W. Hill's method). The effective period belong
 mode under the same drive whose deviations have the same frequency as in mode 1.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -23,6 +23,7 @@ from scipy.sparse import block_array, csc_array, csr_array
 from scipy.sparse.linalg import splu
 
 from ..parameters import Array, require, require_kind, require_whole, require_within
+from ..record import record
 from .finite_rotation import FiniteRotation
 
 MOST_STEPS = 30
@@ -31,7 +32,7 @@ CLOSE = 1e-11
 """Relative change at which Newton's method ends."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@record
 class PeriodicMotion:
     """A periodic motion whose tip is at its turning point at t = 0.
 

@@ -20,13 +20,13 @@ rotary inertia about n and z. An arc has no shear offset here. v and phi are cub
 lock (``docs/theory/beam.md``).
 """
 
-from dataclasses import dataclass
 from typing import Any
 
 import skfem as sk
 from scipy.sparse import csr_array
 
 from ..pieces import Field, Piece
+from ..record import record
 from .section import SpatialSection
 
 
@@ -61,7 +61,7 @@ def inertia_out_of_plane(v: Field, phi: Field, y: Field, psi: Field, p: Any) -> 
     return p.m * (v + p.a * phi) * (y + p.a * psi) + p.I * phi * psi
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@record
 class SidePiece(Piece):
     """A piece that moves out of the plane; its unknowns are v, v', phi, phi' at the nodes."""
 

@@ -17,7 +17,6 @@ plane) it does not.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,13 +26,14 @@ from ..assembly import tip_inertia
 from ..modes import lowest_modes
 from ..parameters import Array, require_kind, require_whole
 from ..pieces import Piece, meshed_pieces, motion_along, motion_at, shared_elements, tie_matrix, tied_matrices
+from ..record import record
 from ..spring import HELD
 from ..strip_element import PieceMesh
 from .element import SidePiece
 from .spring import SpatialSpring
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@record
 class SpatialModes:
     """Mass-normalised modes of a strip in space, lowest first.
 

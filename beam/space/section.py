@@ -32,15 +32,16 @@ warping as a strip). For h = 0 the section is the strip. J of `channel` is then 
 the part 0.63 t/b, since it neglects the two edges of the strip.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import ClassVar
 
 from ..material import Material
 from ..parameters import require, require_kind, require_within
+from ..record import record
 from ..section import StripSection
 
 
-@dataclass(frozen=True, kw_only=True)
+@record(eq=True)
 class SpatialSection:
     """Stiffness and inertia of a section in space.
 

@@ -6,17 +6,16 @@ hold phi'. The tip is a body of mass M [kg] with the rotary inertia J [kg m^2] a
 to one section at the point c [m] from its centroid.
 """
 
-from dataclasses import dataclass
-
 from ..centreline import Centreline
 from ..parameters import require, require_array
+from ..record import record
 from ..spring import Support, Tip, check_strip
 from .section import SpatialSection
 
 Vector = tuple[float, float, float]
 
 
-@dataclass(frozen=True, kw_only=True)
+@record(eq=True)
 class SpatialSpring:
     """A strip in space that follows a plane centreline between two supports.
 

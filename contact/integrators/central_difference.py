@@ -15,11 +15,11 @@ Derivation: ``docs/theory/steps.md``.
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
+from beam.record import record
 from contact.flight.numbers import DECAY, Numbers
 from contact.flight.tip import push_on
 from contact.integrators.fixed_step import FixedStep, stiffness_at
@@ -59,7 +59,7 @@ def central_difference(grid, memory):
     return DONE
 
 
-@dataclass(frozen=True, kw_only=True)
+@record(eq=True)
 class CentralDifference(FixedStep):
     """Central difference with a fixed step, for contact forces.
 

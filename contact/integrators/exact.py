@@ -14,10 +14,10 @@ modes k has to follow the ringing of the highest, and nothing shows that it was 
 """
 
 import math
-from dataclasses import dataclass
 from typing import ClassVar
 
 from beam.parameters import require_whole
+from beam.record import record
 from contact.engine.plan import Plan
 from contact.engine.start import exact_trajectory
 from contact.flight.sampled_crossing import samples_of
@@ -30,7 +30,7 @@ EXACT_NAMES = {code: file.METHOD for code, file in LAWS.items()}  # names of the
 MOST_POINTS = 10**9  # largest number of samples per drive period, which take some minutes
 
 
-@dataclass(frozen=True, kw_only=True)
+@record(eq=True)
 class Exact(Integrator):
     """Exact motion under any contact law, event by event; it has no fixed time step."""
 
@@ -45,7 +45,7 @@ class Exact(Integrator):
         return exact_trajectory(oscillator, plan)
 
 
-@dataclass(frozen=True, kw_only=True)
+@record(eq=True)
 class SampledFlight(Integrator):
     """Exact flights, with crossings detected by sampling.
 

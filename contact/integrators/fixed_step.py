@@ -2,12 +2,12 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
 from beam.parameters import InvalidValue, brief, is_number, require
+from beam.record import record
 from contact.engine.plan import Plan
 from contact.engine.recorder import Recorder, grown, recorder_for, trajectory_of
 from contact.errors import Diverged, StepTooLarge
@@ -70,7 +70,7 @@ def _separated(recorder: Recorder, plan: Plan, order: np.ndarray, period: float,
     return recorder._replace(strobes=rows[:passed], counts=counts, samples=rows[passed:-1])
 
 
-@dataclass(frozen=True, kw_only=True)
+@record(eq=True)
 class FixedStep(Integrator):
     """A method with a time step; strobes, samples and the end of a run need not lie on its grid.
 

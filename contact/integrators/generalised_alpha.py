@@ -32,12 +32,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import ClassVar, NamedTuple
 
 import numpy as np
 
 from beam.parameters import require_within
+from beam.record import record
 from contact.flight.numbers import Numbers
 from contact.flight.tip import push_on
 from contact.integrators.fixed_step import FixedStep, stiffness_at
@@ -197,7 +197,7 @@ def chung_hulbert(rho: float) -> AlphaParameters:
     return AlphaParameters(alpha_m=alpha_m, alpha_f=alpha_f, beta=0.25 * (0.5 + gamma) ** 2, gamma=gamma)
 
 
-@dataclass(frozen=True, kw_only=True)
+@record(eq=True)
 class GeneralisedAlpha(FixedStep):
     """The generalised-alpha method with a fixed step, for contact forces.
 

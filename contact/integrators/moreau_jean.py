@@ -26,12 +26,12 @@ impact is dated, from v_n to v_{n+1}, so that Newton's law holds for what is wri
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
 from beam.parameters import require_within
+from beam.record import record
 from contact.flight.numbers import DECAY, SQUARE, Numbers
 from contact.flight.tip import push_on
 from contact.integrators.fixed_step import FixedStep
@@ -119,7 +119,7 @@ def through_percussions(grid, prepared):
     return DONE
 
 
-@dataclass(frozen=True, kw_only=True)
+@record(eq=True)
 class MoreauJean(FixedStep):
     """Moreau and Jean's time stepping with a fixed step, for Newton's law.
 

@@ -20,16 +20,16 @@ whose instant is known to half a step; stable for any step.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import ClassVar
 
+from beam.record import record
 from contact.integrators.fixed_step import FixedStep
 from contact.integrators.generalised_alpha import chung_hulbert
 from contact.integrators.grid import Grid
 from contact.integrators.moreau_jean import MoreauJean, before_percussions, through_percussions
 
 
-@dataclass(frozen=True, kw_only=True)
+@record(eq=True)
 class NonsmoothGeneralisedAlpha(FixedStep):
     """The nonsmooth generalised-alpha method with a fixed step, for Newton's law.
 

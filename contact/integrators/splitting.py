@@ -22,7 +22,6 @@ spectral radius exceeds one; it may miss narrower resonances.  In flight there i
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import lru_cache
 from typing import ClassVar
 
@@ -30,6 +29,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from beam.parameters import InvalidValue
+from beam.record import record
 from contact.flight.modal_flow import flow_over
 from contact.flight.numbers import DAMPED, Numbers, numbers_of
 from contact.integrators.fixed_step import FixedStep
@@ -132,7 +132,7 @@ def _limit(rows: tuple[tuple[float, ...], ...], order: int, step: float, damping
     return first_instability(numbers, COMPOSITIONS[order], step, damping)
 
 
-@dataclass(frozen=True, kw_only=True)
+@record(eq=True)
 class Splitting(FixedStep):
     """Symmetric splitting into exact flights and kicks of the contact force, with a fixed step.
 

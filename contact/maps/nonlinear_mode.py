@@ -14,13 +14,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from beam.parameters import Array, require_array, require_whole, require_within
+from beam.record import record
 from contact.errors import Chatter, Diverged, NotPeriodic
 from contact.maps.nonlinear_taylor import CHATTERED, FLOWN, ORDER, free_flow, periods
 from contact.maps.protocol import StrobedOrbit, amplitude_factors
@@ -30,7 +31,7 @@ CLOSE = 1e-12  # relative change at which Newton's method ends
 TINY = 1e-30  # imaginary step of a derivative
 
 
-@dataclass(frozen=True, kw_only=True)
+@record(eq=True)
 class NonlinearMode:
     """One mode at finite amplitude with a stop, as a strobed map at one drive amplitude.
 

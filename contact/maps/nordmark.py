@@ -20,13 +20,14 @@ H. E. Nusse, C. Grebogi, Phys. Rev. E 50 (1994) 4427.  Derivation: ``docs/theory
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import ClassVar, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from beam.parameters import Array, require, require_array, require_whole, require_within
+from beam.record import record
 from contact.machine.compiled import kernel
 from contact.maps.nordmark_coefficients import coefficients
 from contact.maps.protocol import Jacobians, StrobedOrbit, amplitude_factors
@@ -47,7 +48,7 @@ def iterate_map(x, y, alpha, gamma, gamma_impact, rho, delay_term, out):
         out[n, 1] = y
 
 
-@dataclass(frozen=True, kw_only=True)
+@record(eq=True)
 class NordmarkMap:
     """Nordmark's map, the letter's equations (2) and (3); one step is one drive period.
 

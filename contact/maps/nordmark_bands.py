@@ -11,14 +11,14 @@ Source: letter of 1996, Fig. 3 and text.  Derivation: ``docs/theory/map.md``.
 """
 
 import math
-from dataclasses import dataclass
 
 from beam.parameters import require_whole, require_within
+from beam.record import record
 from contact.maps.nordmark import NordmarkMap, YLine
 from contact.maps.nordmark_orbits import MOST_PERIODS
 
 
-@dataclass(frozen=True, kw_only=True)
+@record(eq=True)
 class Band:
     """The drive frequencies at which the orbit p_m appears at grazing.
 

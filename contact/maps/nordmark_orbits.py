@@ -20,20 +20,20 @@ Sources: letter of 1996, Fig. 3 and text; W. Chin, E. Ott, H. E. Nusse, C. Grebo
 """
 
 import math
-from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 from beam.parameters import require_kind, require_whole, require_within
+from beam.record import record
 from contact.flight.polynomial_root import positive_roots
 from contact.maps.nordmark import NordmarkMap
 
 MOST_PERIODS = 100_000  # longest period of an orbit, in drive periods; its states are computed one by one
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@record
 class MaximalOrbit:
     """A periodic solution of Nordmark's map with one impact, at its first state.
 

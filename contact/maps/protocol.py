@@ -7,13 +7,13 @@ of ``contact.maps``, and any other class with the methods of `StrobedMap`.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Generic, Protocol, TypeVar, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from beam.parameters import require, require_array, require_kind
+from beam.record import record
 
 S = TypeVar("S")
 
@@ -21,7 +21,7 @@ Jacobians = tuple[list[tuple[np.ndarray, int]], S]
 """Derivatives along an orbit, each with the number of steps that it spans, and the state at its end."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@record
 class StrobedOrbit(Generic[S]):
     """The strobes of a motion one after the other, and the state at the end.
 

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from beam.parameters import require, require_array, require_whole
+from beam.record import record
 from contact.engine.event_loop import DONE
 from contact.engine.start import failure, start_of, state_of
 from contact.errors import UnresolvedCrossing
@@ -26,7 +27,7 @@ LONGER = (0, 1, 3, 7, 15, 31, 63)
 """Drive periods by which a motion that ends in contact is prolonged; a contact lasts less than a period."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@record
 class StroboscopicMap:
     """The map of an impact oscillator from one strobe to the next, exact within rounding.
 

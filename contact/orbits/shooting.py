@@ -6,10 +6,10 @@ folds, and all its orbits at one amplitude, are found by following the branch
 """
 
 import math
-from dataclasses import dataclass
 from itertools import pairwise
 
 from beam.parameters import require_within
+from beam.record import record
 from contact.orbits.branches.amplitude_curve import branch_ended, whole_branch
 from contact.orbits.branches.continuation import lowest_fold
 from contact.orbits.branches.events import Arc
@@ -17,7 +17,7 @@ from contact.orbits.families.newton_family import NewtonFamily
 from contact.orbits.families.touch_orbit import PeriodicOrbit
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@record
 class Shooting(NewtonFamily):
     """The family of periodic orbits under any contact law, by shooting.
 

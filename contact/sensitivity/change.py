@@ -11,7 +11,7 @@ motion (``contact.steady_response``) changes by
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from beam import ModalChange, ModalModel
 from beam.parameters import Array, final, require, require_array, require_each, require_kind, require_within
+from beam.record import record
 from contact.flight.variation import Variation, variation
 from contact.oscillator import ImpactOscillator, require_one_stop
 from contact.steady_response import dynamic_stiffness
@@ -32,7 +33,7 @@ STRIDE, STENCIL = 1e-3, np.arange(-2.0, 3.0)
 
 
 @final
-@dataclass(frozen=True, kw_only=True, eq=False)
+@record
 class Change:
     """The derivatives of an oscillator's numbers with respect to one parameter.
 
@@ -88,7 +89,7 @@ class Change:
         return replace(oscillator, model=model, stop=stop, drive=drive)
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@record
 class Sensitivities:
     """Derivatives of an oscillator's numbers and steady motion with respect to P parameters, `changes`.
 

@@ -6,11 +6,11 @@ added again for states (q, q').  Strobes move with the drive: t = n/f.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from beam.parameters import Array, InvalidValue, require_array, require_kind
+from beam.record import record
 from contact.oscillator import ImpactOscillator, require_one_stop
 from contact.sensitivity.change import Change, Sensitivities
 from contact.sensitivity.replay import Replay, deviation_rates_at_strobe
@@ -18,7 +18,7 @@ from contact.simulation import simulate
 from contact.trajectory import Regime, State, Trajectory
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@record
 class MotionDerivatives:
     """A simulated motion with its derivatives with respect to its start and P parameters.
 

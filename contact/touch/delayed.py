@@ -27,13 +27,14 @@ with the deviation (gap, -tau v) - R (p, r) and comes back with (gap, v) - (p, r
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
 
 from beam.parameters import final, require, require_within
+from beam.record import record
 from contact.errors import NotPeriodic
 from contact.flight.modal_flow import free_flow
 from contact.flight.numbers import COSINE, DECAY, LOAD, SQUARE, WEIGHT
@@ -49,7 +50,7 @@ DELAYED = 3  # the code of this law
 
 
 @final
-@dataclass(frozen=True, kw_only=True, eq=False)
+@record
 class DelayedRestitution(ContactLaw):
     """Delayed impact: the tip waits on the wall, then leaves with -`restitution` times its approach velocity.
 

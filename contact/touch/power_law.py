@@ -10,13 +10,14 @@ The compiled part is ``contact.touch.power``.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from typing import ClassVar
 
 import numpy as np
 
 from beam.parameters import InvalidValue, final, require_within
+from beam.record import record
 from contact.flight.elementary import EPS
 from contact.laws import POWER, ContactLaw
 from contact.restitution import damping_ratio
@@ -26,7 +27,7 @@ MOST = WINDOW  # largest m: the modes move at each order m of sigma, the last `W
 
 
 @final
-@dataclass(frozen=True, kw_only=True)
+@record(eq=True)
 class PowerContact(ContactLaw):
     """Power of the depth with a dashpot: N = max(0, k d^p + c d^((p-1)/2) d') for d > 0.
 

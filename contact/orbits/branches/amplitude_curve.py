@@ -6,9 +6,9 @@ Its unknowns are the deviations and the logarithm of the approach velocity of th
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from beam.parameters import Array
+from beam.record import record
 from contact.errors import BranchEnded, ContactError
 from contact.orbits.branches.branch import SHORTER, Branch, Leg, branch_of, walk
 from contact.orbits.branches.curve import Curve, grazes
@@ -37,7 +37,7 @@ WHOLE = ("range", "closed", SHORTER)
 """Ends of a branch that was followed as far as it goes; a branch that ends by a graze was, too."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@record
 class AmplitudeCurve(Curve):
     """The curve of a family between two approach velocities [m/s]; its parameter is the excess."""
 

@@ -7,12 +7,12 @@ number of touches.  Such a neighbour exists under a law whose force is continuou
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
+from beam.record import record
 from contact.errors import ContactError
 from contact.orbits.branches.curve import BEND, CROSSING, Curve, grazes
 from contact.orbits.branches.events import CLOSE, Event, event_at, events_between, refined, with_undecided
@@ -28,7 +28,7 @@ ACROSS = tuple(10.0**-k for k in range(9, 2, -1))
 SHORTER = "the orbit becomes one of a shorter period, which runs through it several times"
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@record
 class Branch:
     """A branch of periodic orbits, with the events on it.
 

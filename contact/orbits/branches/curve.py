@@ -8,11 +8,12 @@ cross, and only there.  The last unknown has a range, beyond which the curve is 
 
 import math
 from abc import ABC, abstractmethod
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from beam.parameters import Array, Refusal
+from beam.record import record
 from contact.errors import ContactError
 from contact.orbits.families.newton import CurvePoint, Equations, Iterate, newton
 from contact.orbits.families.touch_orbit import PeriodicOrbit, peaks
@@ -33,7 +34,7 @@ SLOW, SHALLOW, SPLIT = 1e-3, 1e-6, 1e-5
 approach velocity of a touch that splits in two."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@record
 class Curve(ABC):
     """A curve of orbits through or near the orbit `like`, whose period and sizes all points share."""
 

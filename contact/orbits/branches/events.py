@@ -15,11 +15,12 @@ number is only a sign:
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 import numpy as np
 
 from beam.parameters import Array
+from beam.record import record
 from contact.errors import ContactError
 from contact.orbits.branches.curve import Curve, why_no_neighbours
 from contact.orbits.families.newton import CurvePoint
@@ -43,7 +44,7 @@ MOST_HALVINGS, MIDDLES = 12, (0.5, 0.4, 0.6)
 LEAST_TORUS = 1e-12  # the sign of a smaller test of a torus is rounding: without damping, some m_i m_j is 1
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@record
 class Event:
     """A point on a branch at which its orbits change, such as a fold.
 

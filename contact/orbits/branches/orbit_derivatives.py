@@ -7,12 +7,13 @@ of the fold itself.  Derivation: ``docs/theory/folds.md``.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 
 import numpy as np
 
 from beam.parameters import Array, require_kind
+from beam.record import record
 from contact.errors import NoDerivative
 from contact.orbits.families.equations import STEEPEST, drive_of, shoot, sizes_of, slopes_of, tip_slopes
 from contact.orbits.families.touch_orbit import PeriodicOrbit
@@ -22,7 +23,7 @@ from contact.simulation import simulate
 from contact.trajectory import Trajectory
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@record
 class OrbitDerivatives:
     """Derivatives of a periodic orbit, per unit of each of P parameters.
 

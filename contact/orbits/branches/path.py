@@ -6,12 +6,13 @@ own arc length (``contact.orbits.branches.branch``), and turns round where p doe
 """
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property, partial
 
 import numpy as np
 
 from beam.parameters import Array, require, require_kind, require_within
+from beam.record import record
 from contact.errors import NotPeriodic
 from contact.flight.modal_flow import steady_motion
 from contact.orbits.branches.branch import Branch, branch_of
@@ -23,7 +24,7 @@ from contact.oscillator import ImpactOscillator
 from contact.sensitivity.change import Change, Path, Sensitivities, change_along
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@record
 class PathCurve(Curve):
     """The curve of orbits over a `path` p -> ImpactOscillator with p in [low, high]."""
 

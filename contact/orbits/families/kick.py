@@ -8,12 +8,12 @@ have its orbits in closed form (`repeated_touch` of ``contact.touch``).
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
 from beam.parameters import require, require_array, require_within, shown
+from beam.record import record
 from contact.flight.modal_flow import free_flow
 from contact.flight.variation import variation
 from contact.orbits.families.single_impact import Kick, SingleImpactFamily, SingleImpactOrbit
@@ -31,7 +31,7 @@ far above the letter's."""
 GRID = 33  # velocities of a search, on a logarithmic grid: eight a decade
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@record
 class KickFamily(SingleImpactFamily):
     """The p_m orbits with one collision under any contact law, from kicks.
 

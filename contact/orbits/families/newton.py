@@ -9,12 +9,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
 from beam.parameters import Array
+from beam.record import record
 from contact.errors import NotPeriodic
 from contact.orbits.families.touch_orbit import PeriodicOrbit
 
@@ -45,7 +46,7 @@ class Iterate(NamedTuple):
 Equations = Callable[[Array], Iterate]
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@record
 class CurvePoint:
     """A point of a curve of orbits: unknowns `x` and unit vector `direction` along the curve, both (n + 1,).
 

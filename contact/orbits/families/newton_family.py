@@ -8,12 +8,13 @@ and down to grazing.
 """
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
 
 from beam.parameters import Array, require, require_kind, require_whole, require_within
+from beam.record import record
 from contact.errors import NotPeriodic
 from contact.orbits.families.equations import STEEPEST, driven_at, shoot, sizes_of
 from contact.orbits.families.kick import KickFamily
@@ -25,7 +26,7 @@ from contact.simulation import simulate
 from contact.trajectory import ImpactKind, Regime, State
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@record
 class NewtonFamily:
     """The orbits with `impacts` touches in `m` drive periods; the `oscillator` has any amplitude."""
 

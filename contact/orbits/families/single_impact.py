@@ -23,7 +23,7 @@ Derivation: ``docs/theory/orbits.md``.
 
 import math
 from abc import ABC, abstractmethod
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import Self
 
@@ -31,6 +31,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beam.parameters import Array, InvalidType, InvalidValue, require_kind, require_whole, require_within
+from beam.record import record
 from contact.flight.modal_flow import free_flow
 from contact.flight.polynomial_root import positive_roots
 from contact.laws import NewtonRestitution
@@ -45,7 +46,7 @@ SINGULAR = 1e-13  # a D below this is rounding of 1 - tr N + G, terms of size 1:
 HEIGHT = 1e-13  # rounding of the height at which the flight ends, in units of the gap
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@record
 class Kick:
     """The effect of one collision on all modes.
 
@@ -71,7 +72,7 @@ class Kick:
     leaves: bool = True
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@record
 class SingleImpactOrbit(TouchOrbit):
     """An orbit with one collision in m drive periods, as `MaximalFamily` and `KickFamily` return it.
 
@@ -111,7 +112,7 @@ class SingleImpactOrbit(TouchOrbit):
         return shoot(known, self.phase, self.deviations, self.m, self.kick.impacts)[0].tangent
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@record
 class SingleImpactFamily(ABC):
     """The orbits with one collision in m drive periods, from the kick of that collision.
 
@@ -203,7 +204,7 @@ def excess_of(p: float, rate: float) -> float:
     return float(square / (1.0 + math.sqrt(max(1.0 + square, 0.0))))
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@record
 class MaximalFamily(SingleImpactFamily):
     """The p_m orbits under Newton's law with a constant restitution, in closed form.
 

@@ -5,7 +5,7 @@ give the whole orbit.  `PeriodicOrbit` is what shooting finds: it has the record
 """
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 from typing import TypeVar
 
@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beam.parameters import Array
+from beam.record import record
 from contact.errors import ContactError
 from contact.flight.crossing import CROSSES, FREE, first_crossing
 from contact.flight.modal_flow import steady_motion
@@ -34,7 +35,7 @@ NEARLY = 1e-3  # the same for an orbit at a branch point, which is located only 
 SLACK = 1e-6  # part of a drive period by which the closing touch may be missed, in addition to the residual
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@record
 class TouchOrbit(ABC):
     """A periodic orbit of an impact oscillator, by its first touch.
 
@@ -123,7 +124,7 @@ class TouchOrbit(ABC):
         return simulate(self.oscillator, self.state(), duration=m - self.phase % m).end
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@record
 class PeriodicOrbit(TouchOrbit):
     """A periodic orbit of an impact oscillator, found by shooting.
 

@@ -20,12 +20,13 @@ the next one goes on from the last state that was reached.  The amplitude enters
 the loop scales the steady motion at grazing.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from beam.parameters import InvalidValue, require_array, require_whole
+from beam.record import record
 from contact.engine.event_loop import DONE
 from contact.engine.start import failure
 from contact.flight.numbers import Numbers
@@ -99,7 +100,7 @@ def settled_column(system, amplitudes, reached, most_cycles, tolerance, found, u
     return amplitudes.size, DONE
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@record
 class ScannedColumn:
     """The results of a scan, all of shape (2, n_excesses): upward scan first, excesses rising in both.
 
@@ -119,7 +120,7 @@ class ScannedColumn:
     reason: NDArray[np.str_]
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@record
 class AmplitudeScan:
     """Upward and downward scans of the drive amplitude in a compiled loop.
 

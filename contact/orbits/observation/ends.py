@@ -13,10 +13,11 @@ impacts in the map, and of two events closer than 1e-6.  See ``docs/theory/folds
 """
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any, Generic, TypeVar
 
 from beam.parameters import require_kind, require_whole, require_within
+from beam.record import record
 from contact.errors import BranchEnded, ContactError
 from contact.laws import NEWTON
 from contact.maps.nordmark import NordmarkMap
@@ -36,7 +37,7 @@ MOST_STEPS = 400  # bound of amplitude steps: 40 doublings reach any excess, and
 BRACKET = "bracket"  # kind of an end of which only the bracket is known
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@record
 class OrbitEnd(Generic[S]):
     """The end of an orbit in a downward scan of the drive amplitude.
 

@@ -11,12 +11,12 @@ error comes from the scatter of blocks.  See ``docs/theory/orbits.md``.
 """
 
 import math
-from dataclasses import dataclass
 from typing import TypeVar
 
 import numpy as np
 
 from beam.parameters import Array, require_whole
+from beam.record import record
 from contact.errors import NoDerivative, NotPeriodic
 from contact.maps.protocol import DifferentiableMap, require_map
 from contact.orbits.observation.repetition import require_orbit
@@ -29,7 +29,7 @@ MOST_STRETCHES = 64  # bound of repetitions of an orbit's period until its strob
 SMALLEST = 1e-300  # replaces a zero on the diagonal of R, where an impact without rebound erases a direction
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@record
 class Exponents:
     """Lyapunov exponents of a motion.
 

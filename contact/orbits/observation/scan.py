@@ -6,12 +6,12 @@ spring stays on its orbit until that orbit ends.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import Generic, TypeVar
 
 import numpy as np
 
 from beam.parameters import require, require_array, require_kind, require_whole
+from beam.record import record
 from contact.errors import ContactError
 from contact.maps.protocol import StrobedMap, require_map
 from contact.orbits.observation.repetition import repeats_after
@@ -20,7 +20,7 @@ from contact.orbits.observation.settling import TOLERANCE, settle
 S = TypeVar("S")
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@record
 class OrbitDiagram(Generic[S]):
     """A scan of the drive amplitude, in the order in which it was made.
 

@@ -14,12 +14,13 @@ The motion without impacts is settled when the free motion that is left cannot r
 ``docs/theory/orbits.md``.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any, Generic, TypeVar
 
 import numpy as np
 
 from beam.parameters import Refusal, require_whole, require_within
+from beam.record import record
 from contact.errors import ContactError
 from contact.impacts import deviations
 from contact.maps.protocol import require_map
@@ -53,7 +54,7 @@ SLACK = 1.5  # factor on the decay that the multiplier predicts, for the other m
 NEAR = 1e-3  # distance over the gap from the orbit, within which the linear neighbourhood is looked for
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@record
 class Settled(Generic[S]):
     """The orbit on which a motion settled, as `settle` and `onset_orbit` return it.
 
