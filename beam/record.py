@@ -29,7 +29,7 @@ ROWS = 12
 """Rows of a table in a notebook."""
 
 PARAMETER = re.compile(r"^(\w+(?:, \w+)*) : .*\n((?:    .*\n|\n)*)", re.MULTILINE)
-UNIT = re.compile(r"\[((?:1/|m|kg|s|Hz|N|Pa|J|rad)[^\],]*)")
+UNIT = re.compile(r"\[(1\]|(?:1/|m|kg|s|Hz|N|Pa|J|rad)[^\],]*)")
 
 
 @dataclass_transform(kw_only_default=True, frozen_default=True, eq_default=False, field_specifiers=(field,))
@@ -50,7 +50,7 @@ def units_of(kind: type) -> dict[str, str]:
     """Return the unit of each field in the docstring of a class, from the brackets beside it."""
     found = dict[str, str]()
     for names, text in PARAMETER.findall(inspect.cleandoc(kind.__doc__ or "") + "\n"):
-        each, units = names.split(", "), UNIT.findall(text)
+        each, units = names.split(", "), [unit.replace("1]", "") for unit in UNIT.findall(text)]
         found |= dict(zip(each, units if len(units) >= len(each) else units[:1] * len(each), strict=False))
     return found
 

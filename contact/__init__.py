@@ -39,7 +39,8 @@ The files: the problem and its answer
     ``steady_response`` the motion without contact, and the drive amplitude at which it grazes
     ``oscillator``      `ImpactOscillator`: a ``beam.ModalModel``, stops and a drive; the equation of motion
     ``impacts``         `Impacts`: every touch of a motion
-    ``trajectory``      `State`, `Trajectory`
+    ``state``           `State`, and the kinds of contact as numbers
+    ``trajectory``      `Trajectory`; ``tables`` and ``plots`` write and draw it
     ``simulation``      `simulate`: a motion with every impact, exact or by a method with a time step
     ``virtual_motion``  the motion of mode 1 as if there were no stop
     ``collision_numbers``
@@ -95,10 +96,11 @@ from contact.orbits.families.single_impact import MaximalFamily, SingleImpactOrb
 from contact.oscillator import ImpactOscillator
 from contact.restitution import MeasuredRestitution, damping_ratio, restitution_from_bounces
 from contact.simulation import simulate
+from contact.state import ImpactKind, Regime, State
 from contact.stop import Stop
 from contact.touch.delayed import DelayedRestitution
 from contact.touch.power_law import PowerContact
-from contact.trajectory import ImpactKind, Regime, State, Trajectory
+from contact.trajectory import Trajectory
 
 __version__ = "0.9.0"
 

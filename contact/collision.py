@@ -22,7 +22,8 @@ from contact.flight.numbers import LOAD, Numbers, with_only_mode
 from contact.impacts import Impacts
 from contact.oscillator import ImpactOscillator, require_one_stop
 from contact.simulation import simulate
-from contact.trajectory import ImpactKind, State, Trajectory
+from contact.state import ImpactKind, State
+from contact.trajectory import Trajectory
 from contact.virtual_motion import VirtualMotion
 
 

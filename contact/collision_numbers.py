@@ -25,7 +25,7 @@ from contact.flight.modal_flow import free_flow, propagate
 from contact.flight.numbers import INVERSE_OMEGA, Numbers
 from contact.flight.tip import tip_rounding
 from contact.impacts import Impacts
-from contact.trajectory import ImpactKind
+from contact.state import ImpactKind
 from contact.virtual_motion import VirtualMotion
 
 

@@ -6,15 +6,17 @@ import math
 from dataclasses import field
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from beam.parameters import require
-from beam.record import record
+from beam.record import record, rows_in_html
 from contact.flight.clock import split_time
 from contact.flight.modal_flow import steady_motion
 from contact.flight.numbers import Numbers
 from contact.oscillator import ImpactOscillator
+from contact.tables import dataframe, write_csv
 
 CSV = dict(stop="1", kind="1", together="1", start="s", end="s", approach="m/s", rebound="m/s", loss="J")
 CSV |= dict(impulse="N s", peak_force="N")
@@ -136,12 +138,36 @@ class Impacts:
             **(unknown | columns),
         )
 
-    def write_csv(self, path: str | Path) -> None:
+    def __repr__(self) -> str:
+        """The number of touches, and their largest speed and force."""
+        words = f"Impacts({len(self)} touches"
+        if not len(self):
+            return f"{words})"
+        words += f" from {self.start[0]:.6g} to {self.start[-1]:.6g} s"
+        most = {"approach up to": ("m/s", self.approach), "peak force up to": ("N", self.peak_force)}
+        known = {name: (unit, values[np.isfinite(values)]) for name, (unit, values) in most.items()}
+        found = [f"{name} {x.max():.6g} {unit}" for name, (unit, x) in known.items() if x.size]
+        return ", ".join([words, *found]) + ")"
+
+    def _repr_html_(self) -> str:
+        """The first touches, a row each."""
+        return rows_in_html(self._columns, CSV)
+
+    @property
+    def _columns(self) -> dict[str, np.ndarray]:
+        """The columns of a table of touches."""
+        return {name: getattr(self, name) for name in CSV}
+
+    def to_csv(self, path: str | Path) -> None:
         """Write one line a touch; the first line names the columns and their units."""
-        rows = zip(*(getattr(self, name).tolist() for name in CSV), strict=True)
-        lines = [",".join(f"{name} [{unit}]" for name, unit in CSV.items())]
-        lines += [",".join(map(repr, row)) for row in rows]
-        Path(path).write_text("\n".join(lines) + "\n", encoding="utf-8")
+        write_csv(path, self._columns, CSV)
+
+    def to_dataframe(self) -> Any:
+        """Return a pandas.DataFrame with one row a touch, and the units in its ``attrs["units"]``.
+
+        ImportError is raised if pandas is not installed.
+        """
+        return dataframe(self._columns, CSV)
 
     @cached_property
     def start(self) -> np.ndarray:

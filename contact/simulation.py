@@ -15,7 +15,8 @@ from contact.flight.numbers import LOAD
 from contact.integrators import INTEGRATORS, Exact, Integrator
 from contact.integrators.method import LAW_NAMES
 from contact.oscillator import ImpactOscillator
-from contact.trajectory import State, Trajectory
+from contact.state import State
+from contact.trajectory import Trajectory
 
 
 def _method(method: Integrator | str | None, oscillator: ImpactOscillator) -> Integrator:

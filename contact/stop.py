@@ -50,7 +50,7 @@ class Stop:
     >>> from contact import NewtonRestitution, Stop
     >>> stop = Stop(gap=11.9e-3, law=NewtonRestitution(local_restitution=0.1))
     >>> stop
-    Stop(gap=0.0119, law=NewtonRestitution(local_restitution=0.1), at='tip', side=1)
+    Stop(gap=0.0119 m, law=NewtonRestitution(local_restitution=0.1))
     >>> replace(stop, side=-1).side
     -1
     """

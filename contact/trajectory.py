@@ -1,161 +1,26 @@
-"""States and motions as named arrays.
-
-A modal state is a displacement q_k [kg^(1/2) m] and a velocity q_k' [kg^(1/2) m/s] of each mode.
-``ImpactOscillator.tip`` gives the displacement of the tip relative to the base.
-"""
+"""A motion as named arrays: strobed and sampled states, and every touch."""
 
 from __future__ import annotations
 
-import math
 from dataclasses import field, fields
-from enum import IntEnum
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from beam.parameters import (
-    InvalidValue,
-    final,
-    is_number,
-    require,
-    require_array,
-    require_whole,
-    require_within,
-    shown,
-)
+from beam.parameters import require, shown
 from beam.record import record
+from contact import plots
 from contact.impacts import Impacts
 from contact.oscillator import ImpactOscillator
+from contact.state import GRAZE, State
+from contact.tables import dataframe, write_csv
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
-class Regime(IntEnum):
-    """How the stop acts on the tip.
-
-    Attributes
-    ----------
-    OUTSIDE : Regime
-        0: the tip is off the wall.
-    CONTACT : Regime
-        1: the wall pushes the tip.
-    INSIDE : Regime
-        2: the tip is behind the wall's rest position, without force.
-    SUSTAINED : Regime
-        3: the motion holds the tip on the wall.
-    WAITING : Regime
-        4: the tip is on the wall until a delayed rebound.
-    """
-
-    OUTSIDE, CONTACT, INSIDE, SUSTAINED, WAITING = range(5)
-
-
-class ImpactKind(IntEnum):
-    """Kind of a touch of the tip.
-
-    Attributes
-    ----------
-    IMPACT : ImpactKind
-        0: a touch that acts on the motion.
-    GRAZE : ImpactKind
-        1: a touch without effect, within rounding.
-    STAY : ImpactKind
-        2: a stay on the wall after accumulated impacts, from the end of their last hop on.
-    UNDER_WAY : ImpactKind
-        3: a contact that had begun before the run.
-    """
-
-    IMPACT, GRAZE, STAY, UNDER_WAY = range(4)
-
-
-OUTSIDE, CONTACT, INSIDE, SUSTAINED, WAITING = map(int, Regime)
-IMPACT, GRAZE, STAY, UNDER_WAY = map(int, ImpactKind)
-"""The regimes and the kinds as plain integers, for the kernels."""
-
-
-@final
-@record
-class State:
-    """Modal displacement and velocity of a spring at a time, and its contact with the stop.
-
-    Parameters
-    ----------
-    displacement, velocity : array_like, shape (n_modes,)
-        Modal coordinates [kg^(1/2) m] and their rates [kg^(1/2) m/s].
-    time : float
-        Time since the start of the drive, base at z = Z sin(2 pi f time) [s].
-    regime : Regime, int or tuple of Regime
-        Regime of the stop `stop`, or its number.  If several stops act at the same time, the regime of each
-        stop of the oscillator.
-    wait, rebound : float
-        Time still to wait [s], and velocity with which the tip then leaves [m/s], in the regime WAITING.
-    stop : int
-        Number of the stop that acts, from 0 on; without a meaning if the regime is OUTSIDE.
-
-    Raises
-    ------
-    ValueError
-        If an array has another shape, a number is not finite, or a regime is unknown.
-    TypeError
-        If an entry is no number.
-
-    See Also
-    --------
-    simulate : The motion from a state.
-    Trajectory : A motion, with its state at the `end`.
-    StroboscopicMap : The map from the state at one strobe to the next.
-
-    Examples
-    --------
-    Two modes at rest; and a tip that passes its place of rest at 0.3 m/s, moved by mode 1 alone:
-
-    >>> from contact import State
-    >>> State.rest(2).displacement
-    array([0., 0.])
-    >>> phi = [4.0, 5.0]  # tip values of the modes [kg^(-1/2)], in a model `phi`
-    >>> state = State(displacement=[0.0, 0.0], velocity=[0.3 / phi[0], 0.0])
-    >>> state.velocity @ phi, state.time
-    (np.float64(0.3), 0.0)
-    """
-
-    displacement: np.ndarray
-    velocity: np.ndarray
-    time: float = 0.0
-    regime: Regime | int | tuple[int, ...] = Regime.OUTSIDE
-    wait: float = 0.0
-    rebound: float = 0.0
-    stop: int = 0
-
-    def __post_init__(self) -> None:
-        shape, words = None, "a number for each mode"
-        for name, unit in (("displacement", "m kg^0.5"), ("velocity", "m kg^0.5/s")):
-            where, given = f"{name} of the state", getattr(self, name)
-            array = require_array(where, given, unit, dimensions=1, shape=shape, words=words)
-            object.__setattr__(self, name, array)
-            require(array.size > 0, where, f"is []; it must be {words}")
-            shape = array.shape
-        if type(self.regime) is not Regime:
-            several = isinstance(self.regime, tuple)
-            given = self.regime if isinstance(self.regime, tuple) else (self.regime,)
-            if not all(is_number(each) and each in (0, 1, 2, 3, 4) for each in given):
-                raise InvalidValue(f"regime of the state is {shown(self.regime)}; it must be 0, 1, 2, 3 or 4")
-            regimes = tuple(Regime(each) for each in given)
-            object.__setattr__(self, "regime", regimes if several else regimes[0])
-        for name, unit in (("time", "s"), ("wait", "s"), ("rebound", "m/s")):
-            value = getattr(self, name)
-            if type(value) is not float or not math.isfinite(value):  # the usual case without a call
-                require_within(f"{name} of the state", value, unit)
-        if self.stop != 0:
-            require_whole("stop of the state", self.stop, "[1], the number of a stop", low=0)
-
-    @property
-    def regimes(self) -> dict[int, int]:
-        """Regime of each stop that is named, by the number of the stop."""
-        return dict(enumerate(self.regime)) if isinstance(self.regime, tuple) else {self.stop: self.regime}
-
-    @staticmethod
-    def rest(n_modes: int) -> State:
-        """Return the state of the straight spring at rest, at time zero."""
-        size = require_whole("n_modes", n_modes, "modes")
-        return State(displacement=np.zeros(size), velocity=np.zeros(size))
+SAMPLES = {"time": "s", "tip": "m", "tip_velocity": "m/s"}
+"""Columns of a table of samples, and their units."""
 
 
 @record
@@ -205,8 +70,7 @@ class Trajectory:
     ...     drive=HarmonicDrive(frequency=22.2),
     ... ).with_excess(0.01)
     >>> trajectory = simulate(oscillator, periods=10, times=[0.1, 0.2])
-    >>> tip = oscillator.tip(trajectory.displacement)
-    >>> print((1e3 * tip).round(2), "mm,", len(trajectory.impacts), "impacts")
+    >>> print((1e3 * trajectory.tip).round(2), "mm,", len(trajectory.impacts), "impacts")
     [7.62 4.5 ] mm, 3 impacts
     """
 
@@ -222,16 +86,65 @@ class Trajectory:
     impacts: Impacts = field(repr=False)
     evaluations: int = 0
 
-    def save(self, path: str | Path) -> None:
-        """Write the motion into a file, ``.npz`` or ``.csv`` by the end of its name.
+    def __repr__(self) -> str:
+        """How long it is, and what it holds."""
+        last, modes = f"{self.end.time:.6g} s", self.oscillator.n_modes
+        words = f"{self.strobe_time.size} strobes to {last}, {self.time.size} samples, {modes} modes"
+        return f"Trajectory({words}, {self.impacts})"
 
-        ``.npz`` keeps every number, for `load`; ``.csv`` has one line a touch, for other programs.
-        ValueError is raised for another ending.
+    def _repr_html_(self) -> str:
+        """The same words, and the first impacts in rows."""
+        return f"<p>{self!r}</p>{self.impacts._repr_html_()}"
+
+    @property
+    def tip(self) -> np.ndarray:
+        """Displacements of the tip relative to the base at the requested times [m], shape (n_times,)."""
+        return self.oscillator.tip(self.displacement)
+
+    @property
+    def tip_velocity(self) -> np.ndarray:
+        """Velocities of the tip relative to the base at the requested times [m/s], shape (n_times,)."""
+        return self.oscillator.tip(self.velocity)
+
+    @property
+    def _columns(self) -> dict[str, np.ndarray]:
+        """The columns of a table of samples; ValueError if there are none."""
+        words = "was made without times; give some, for instance simulate(..., times=np.linspace(0, 1, 1000))"
+        require(self.time.size > 0, "trajectory", words)
+        return {name: getattr(self, name) for name in SAMPLES}
+
+    def plot(self, axes: Axes | None = None) -> Axes:
+        """Draw the tip [mm] against time [s], with the stops at the tip and the impacts on them.
+
+        It draws on `axes` of matplotlib, or on those of a new figure, and returns them.  ValueError is raised
+        for a trajectory without samples.
         """
-        if str(path).endswith(".csv"):
-            self.impacts.write_csv(path)
-            return
-        require(str(path).endswith(".npz"), "path", f"is {shown(str(path))}; it must end with .npz or .csv")
+        samples, felt = self._columns, self.impacts.kind != GRAZE
+        stops = self.oscillator.stops
+        gaps = {number: 1e3 * stop.side * stop.gap for number, stop in enumerate(stops) if stop.at == "tip"}
+        marks = zip(self.impacts.start[felt].tolist(), self.impacts.stop[felt].tolist(), strict=True)
+        axes = plots.motion(axes, samples["time"], 1e3 * samples["tip"], gaps, list(marks))
+        axes.set(xlabel="time (s)", ylabel="tip (mm)")
+        return axes
+
+    def to_csv(self, path: str | Path) -> None:
+        """Write time, tip displacement and tip velocity at the requested times, with a heading and units.
+
+        ValueError is raised for a trajectory without samples.  `Impacts.to_csv` writes the touches.
+        """
+        write_csv(path, self._columns, SAMPLES)
+
+    def to_dataframe(self) -> Any:
+        """Return the columns of `to_csv` as a pandas.DataFrame; ImportError if pandas is not installed."""
+        return dataframe(self._columns, SAMPLES)
+
+    def save(self, path: str | Path) -> None:
+        """Write every number of the motion into an ``.npz`` file, for `load`.
+
+        ValueError is raised for another ending; `to_csv` writes a table for other programs.
+        """
+        words = "it must end with .npz; for a table use to_csv of the trajectory or of its impacts"
+        require(str(path).endswith(".npz"), "path", f"is {shown(str(path))}; {words}")
         arrays = {name: getattr(self, name) for name in _ARRAYS}
         arrays |= {f"impacts_{name}": getattr(self.impacts, name) for name in _COLUMNS}
         arrays |= {f"end_{name}": np.asarray(getattr(self.end, name)) for name in _STATE}

@@ -23,14 +23,14 @@ from matplotlib.figure import Figure
 from matplotlib.widgets import RadioButtons, Slider
 
 from beam import InvalidValue, ModalModel, Refusal
-from contact import ContactError, ImpactKind, StrobedMap, StroboscopicMap, simulate
+from contact import ContactError, ImpactKind, StrobedMap, StroboscopicMap, plots, simulate
 from contact.orbits import settle
 from studies.physics.descriptions import BELOW, TITLES, strobed_at, up_and_down
 from studies.physics.least_model import least_modes, middle_of
 from studies.physics.one_mode import with_restitution
 from studies.shell.executors import say
 from studies.shell.options import Parser, add_scene, tool
-from studies.shell.plotting import DOWN, EXCESS, GUIDE, INCH, PAGE, UP, house_style, points, strobe_points
+from studies.shell.plotting import DOWN, EXCESS, GUIDE, INCH, PAGE, UP, house_style, points
 from studies.shell.programs import COMMAND, needs
 from studies.shell.scene import Scene, harmonic, model_of, one_stop, read_scene
 
@@ -124,7 +124,7 @@ class Window:
             plane.plot(x, y, **points(0))
             for way, look in (("up", UP), ("down", DOWN)):
                 one = scans[way]
-                strobe_points(diagram, one.excess, scale * one.points, one.m > 0, look, "")
+                plots.strobes(diagram, one.excess, scale * one.points, one.m > 0, **look)
             diagram.axvline(excess, **GUIDE)
         trace.set_title(words, loc="left", wrap=True)
         self.figure.canvas.draw_idle()

@@ -14,9 +14,9 @@ from contact.flight.elementary import EPS
 from contact.flight.numbers import NUMBERS, STACKED, TIME_SCALE, WEIGHT
 from contact.flight.polynomial_root import first_polynomial_root
 from contact.machine.compiled import kernel, part
+from contact.state import STAY
 from contact.touch.passage import AT_END, RELEASED, SECOND, TOO_MANY, add_exchange, follower, put_state
 from contact.touch.series import fitted
-from contact.trajectory import STAY
 
 DONE, FAILED_CROSSING, FAILED_CHATTER, FAILED_STEPS, FAILED_SERIES, FAILED_SECOND, LOG_FULL = range(7)
 GOING, CROSSED, GRAZED = range(-3, 0)

@@ -27,10 +27,10 @@ from contact.flight.modal_flow import apply_flow, flow_over, load_state, new_fli
 from contact.flight.numbers import seen_from, stops_of
 from contact.flight.sampled_crossing import first_sampled_crossing
 from contact.machine.compiled import borrowed, held, kernel, part
+from contact.state import OUTSIDE
 from contact.touch import time_series
 from contact.touch.passage import is_full, meet
 from contact.touch.series import Series, new_series
-from contact.trajectory import OUTSIDE
 
 MOST_IMPACTS = 100_000
 """Bound of impacts in one drive period.  Accumulating impacts with e = 0.999 take about 2e4 before the hops

@@ -7,7 +7,7 @@ import numpy as np
 from beam.parameters import InvalidValue, require, require_array, require_whole, require_within, shown
 from contact.flight.clock import split_time
 from contact.oscillator import ImpactOscillator
-from contact.trajectory import State
+from contact.state import State
 
 MOST_STORED = 2.0**28  # largest number of values in the strobes of one run: 2 GB
 

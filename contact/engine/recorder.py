@@ -14,8 +14,9 @@ from contact.flight.modal_flow import propagate_flight, steady_motion
 from contact.impacts import Impacts, steady_states
 from contact.machine.compiled import inlined, kernel, part
 from contact.oscillator import ImpactOscillator
+from contact.state import STAY, State
 from contact.touch.passage import MARKS, TOUCH, new_touches, put_state
-from contact.trajectory import STAY, State, Trajectory
+from contact.trajectory import Trajectory
 
 COPIED = "approach", "rebound", "loss", "impulse", "peak_force", "kind", "stop"  # columns of the log
 

@@ -11,12 +11,12 @@ from contact.engine.recorder import put_sample, sample_due
 from contact.engine.together import instant
 from contact.flight.numbers import seen_from
 from contact.machine.compiled import kernel, part
+from contact.state import CONTACT, INSIDE, OUTSIDE, SUSTAINED
 from contact.touch import time_series
 from contact.touch.exchange import UNIFORM, exchange_of
 from contact.touch.passage import CLOSEST, add_exchange, put_state
 from contact.touch.series import Series, fitted
 from contact.touch.sets import hold, step
-from contact.trajectory import CONTACT, INSIDE, OUTSIDE, SUSTAINED
 
 
 @kernel

@@ -17,10 +17,11 @@ from contact.flight.numbers import LOAD, Numbers, views_of
 from contact.flight.sampled_crossing import Samples
 from contact.flight.tip import tip_rounding, tip_state
 from contact.oscillator import ImpactOscillator
+from contact.state import INSIDE, OUTSIDE, SUSTAINED, WAITING, ImpactKind, Regime, State
 from contact.touch import LAWS, force, strike
 from contact.touch.passage import STATE, open_touch
 from contact.touch.sets import new_sets
-from contact.trajectory import INSIDE, OUTSIDE, SUSTAINED, WAITING, ImpactKind, Regime, State, Trajectory
+from contact.trajectory import Trajectory
 
 HELD_WITHIN = 1e3  # largest distance from the gap of a tip that rests on the wall, in rounding bounds
 FAST = 1e300  # a rate at which any dashpot pulls more than a spring pushes [m/s]

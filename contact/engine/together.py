@@ -20,12 +20,12 @@ from contact.flight.numbers import NUMBERS, seen_from
 from contact.flight.tip import tip_rounding, tip_state
 from contact.laws import NEWTON
 from contact.machine.compiled import kernel, part
+from contact.state import CONTACT, IMPACT, INSIDE, OUTSIDE, STAY, SUSTAINED
 from contact.touch.impulses import MOST, moreau, sequence
 from contact.touch.newton import STEADY_PULL, newton_impact, restitution_at
 from contact.touch.passage import add_exchange, begin, close_touch, meet, open_touch
 from contact.touch.rests import hopping, hops_end, settle
 from contact.touch.sets import AFTER, CHANGES, IMPULSE, LEAVES, LOSS, RESTITUTION, SPEED, hold, push_back
-from contact.trajectory import CONTACT, IMPACT, INSIDE, OUTSIDE, STAY, SUSTAINED
 
 HOPS, STAYS = 3, 4  # events of a stop that an impulse has left with a velocity; that its hops lead to rest
 

@@ -16,8 +16,9 @@ from contact.flight.numbers import Numbers
 from contact.integrators.grid import DIVERGED, DONE, FULL, PROGRESS, Grid, first_tangent
 from contact.integrators.method import FORCE_LAWS, Integrator
 from contact.oscillator import ImpactOscillator
+from contact.state import CONTACT, OUTSIDE, UNDER_WAY, State
 from contact.touch.passage import open_touch
-from contact.trajectory import CONTACT, OUTSIDE, UNDER_WAY, State, Trajectory
+from contact.trajectory import Trajectory
 
 
 def stiffness_at(numbers: Numbers, square: float | np.ndarray) -> float:

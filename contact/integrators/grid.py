@@ -24,8 +24,8 @@ from contact.engine.recorder import Recorder, put_sample, sample_due
 from contact.flight.numbers import DECAY, SQUARE, Numbers
 from contact.flight.tip import push_on, tip_sum
 from contact.machine.compiled import inlined, kernel, part
+from contact.state import IMPACT
 from contact.touch.passage import add_exchange, close_touch, is_full, open_touch
-from contact.trajectory import IMPACT
 
 DONE, FULL, TOO_LARGE, DIVERGED = 0, 1, 2, 3
 """How a step or a run ends: well; with a full log; at a contact too stiff for the step; with a motion that is

@@ -12,8 +12,9 @@ from typing import ClassVar
 from contact.engine.plan import Plan
 from contact.flight.numbers import Numbers
 from contact.oscillator import ImpactOscillator
+from contact.state import CONTACT
 from contact.touch import LAWS
-from contact.trajectory import CONTACT, Trajectory
+from contact.trajectory import Trajectory
 
 LAW_NAMES = {code: file.LAW for code, file in LAWS.items()}  # the laws in words, by their codes
 FORCE_LAWS = tuple(code for code, file in LAWS.items() if CONTACT in file.REGIMES)

@@ -39,9 +39,9 @@ from contact.integrators.generalised_alpha import AlphaParameters, AlphaState, a
 from contact.integrators.grid import DONE, Grid, cubic_interpolation, force_in_flight, make_end_step, tip_of
 from contact.laws import NEWTON
 from contact.machine.compiled import inlined, kernel
+from contact.state import IMPACT
 from contact.touch.newton import restitution_at
 from contact.touch.passage import add_exchange, close_touch, open_touch
-from contact.trajectory import IMPACT
 
 
 @inlined

@@ -16,11 +16,11 @@ The first kernel of the package that the main process compiles is announced on s
 import contextlib
 import hashlib
 import inspect
+import logging
 import multiprocessing
 import os
 import re
 import shutil
-import sys
 import tempfile
 import time
 from collections.abc import Callable
@@ -117,7 +117,8 @@ class _Announcement(event.Listener):  # type: ignore[misc]
         worker = multiprocessing.parent_process() is not None
         if ours and not worker and not self.said:
             self.said = True
-            print("compiling kernels, about 60 s, once", file=sys.stderr, flush=True)
+            # a warning, so that it is seen where nobody has set up logging
+            logging.getLogger("contact").warning("compiling kernels, about 60 s, once")
 
     def on_end(self, event: Any) -> None:
         """A kernel is ready."""

@@ -21,7 +21,7 @@ from contact.oscillator import ImpactOscillator, require_one_stop
 from contact.sensitivity.change import Sensitivities
 from contact.sensitivity.replay import Replay
 from contact.simulation import require_state, simulate
-from contact.trajectory import Regime, State
+from contact.state import Regime, State
 
 LONGER = (0, 1, 3, 7, 15, 31, 63)
 """Drive periods by which a motion that ends in contact is prolonged; a contact lasts less than a period."""

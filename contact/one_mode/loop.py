@@ -31,7 +31,7 @@ from contact.flight.numbers import COSINE, SINE, with_drive
 from contact.machine.compiled import borrowed, inlined, kernel
 from contact.one_mode.one_impact import crossing_guess, is_proved, one_impact, peak_derivatives
 from contact.one_mode.period_table import SMALL, flow_over, table_at, taylor_flow, through, tip_near
-from contact.trajectory import OUTSIDE
+from contact.state import OUTSIDE
 
 NEWTON_STEPS = 60  # bound of Newton steps; next to a graze each halves the distance to the double root
 

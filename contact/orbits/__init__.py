@@ -10,8 +10,10 @@
 A parameter is a `Change`, a direction in which the numbers of the oscillator change.
 """
 
-from contact.orbits.branches.continuation import Branch, first_event, fold_along_frequency, fold_of, follow
+from contact.orbits.branches.branch import Branch
+from contact.orbits.branches.continuation import first_event, follow
 from contact.orbits.branches.events import Event
+from contact.orbits.branches.folds import fold_along_frequency, fold_of
 from contact.orbits.branches.orbit_derivatives import OrbitDerivatives, excess_derivatives, orbit_derivatives
 from contact.orbits.branches.path import follow_path
 from contact.orbits.families.kick import KickFamily

@@ -2,7 +2,7 @@
 
 `Shooting` finds an orbit by Newton's method next to another one (``contact.orbits.families.equations``).  Its
 folds, and all its orbits at one amplitude, are found by following the branch
-(``contact.orbits.branches.continuation``).
+(``contact.orbits.branches.folds``).
 """
 
 import math
@@ -11,8 +11,8 @@ from itertools import pairwise
 from beam.parameters import require_within
 from beam.record import record
 from contact.orbits.branches.amplitude_curve import branch_ended, whole_branch
-from contact.orbits.branches.continuation import lowest_fold
 from contact.orbits.branches.events import Arc
+from contact.orbits.branches.folds import lowest_fold
 from contact.orbits.families.newton_family import NewtonFamily
 from contact.orbits.families.touch_orbit import PeriodicOrbit
 

@@ -15,7 +15,8 @@ from contact.oscillator import ImpactOscillator, require_one_stop
 from contact.sensitivity.change import Change, Sensitivities
 from contact.sensitivity.replay import Replay, deviation_rates_at_strobe
 from contact.simulation import simulate
-from contact.trajectory import Regime, State, Trajectory
+from contact.state import Regime, State
+from contact.trajectory import Trajectory
 
 
 @record

@@ -18,9 +18,10 @@ from contact.machine.compiled import kernel
 from contact.oscillator import ImpactOscillator
 from contact.sensitivity.change import Sensitivities
 from contact.sensitivity.touch_flow import FLOWN, TOUCHING, flow_error, flow_from_touch
+from contact.state import ImpactKind, State
 from contact.touch import LAWS
 from contact.touch.passage import new_touches
-from contact.trajectory import ImpactKind, State, Trajectory
+from contact.trajectory import Trajectory
 
 
 @kernel

@@ -14,10 +14,10 @@ from contact.flight.crossing import CROSSES, first_crossing
 from contact.flight.modal_flow import propagate
 from contact.flight.variation import force_jump, tangent_flight
 from contact.machine.compiled import borrowed, held, kernel, part
+from contact.state import CONTACT, OUTSIDE, SUSTAINED
 from contact.touch.passage import AT_END, RELEASED, STATE, begin, follower
 from contact.touch.series import new_series
 from contact.touch.tangent_series import new_tangent_workspace, tangent_step
-from contact.trajectory import CONTACT, OUTSIDE, SUSTAINED
 
 FLOWN, FEWER_TOUCHES, FAILED, TOUCHING, TOO_STIFF = range(5)
 """Outcomes of a flow: it reached its end; it has too few touches; it was lost; its end falls into the last

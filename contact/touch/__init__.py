@@ -19,7 +19,7 @@ Read `ContactLaw`, ``time_series``, `Series` and `product` in ``series``, `Weigh
 What a file offers.  `numbers` is the oscillator, `run` the state of the motion
 (``contact.touch.passage.STATE``), (u, v) are the deviations, and `series` is the workspace of one step.
     LAW, METHOD                               the law in words; a name for `method=`, which laws may share
-    REGIMES                                   where the tip can be: ``contact.trajectory.Regime``
+    REGIMES                                   where the tip can be: ``contact.state.Regime``
     series_size(numbers) -> order, columns     size of the workspace of one step
     strike(numbers, run, u, v, approach) -> regime, rebound, loss, impulse
                                               the immediate effect of a touch: the regime that follows, the

@@ -43,8 +43,8 @@ from contact.flight.variation import NUMBER0, NUMBER1, all_tip_changes, tangent_
 from contact.laws import ContactLaw
 from contact.machine.compiled import kernel, part
 from contact.speed_table import SPEEDS, SpeedFunction, at_speed, raised, require_speeds, sampled
+from contact.state import OUTSIDE, WAITING
 from contact.touch import newton
-from contact.trajectory import OUTSIDE, WAITING
 
 DELAYED = 3  # the code of this law
 

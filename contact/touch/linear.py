@@ -15,9 +15,9 @@ from contact.flight.elementary import EPS
 from contact.flight.polynomial_root import first_polynomial_root
 from contact.flight.tip import tip_rounding
 from contact.machine.compiled import kernel, part
+from contact.state import CONTACT, INSIDE, OUTSIDE
 from contact.touch import time_series
 from contact.touch.time_series import DEPTH, FORCE, begin, extend, longest_step
-from contact.trajectory import CONTACT, INSIDE, OUTSIDE
 
 LAW, METHOD = "LinearContact", "piecewise-linear"
 REGIMES = (OUTSIDE, CONTACT, INSIDE)

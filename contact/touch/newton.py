@@ -29,10 +29,10 @@ from contact.flight.tip import hold, jerk_bound, push_on, tip_rounding, tip_stat
 from contact.flight.variation import NUMBER0, all_tip_changes
 from contact.machine.compiled import kernel, part
 from contact.speed_table import at_speed
+from contact.state import OUTSIDE, SUSTAINED
 from contact.touch import time_series
 from contact.touch.exchange import UNIFORM, exchange_of
 from contact.touch.time_series import FORCE, begin, extend, free_pull, longest_step
-from contact.trajectory import OUTSIDE, SUSTAINED
 
 LAW, METHOD = "NewtonRestitution", "event-driven"
 REGIMES = (OUTSIDE, SUSTAINED)

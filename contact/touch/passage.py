@@ -23,7 +23,7 @@ from contact import touch
 from contact.flight.elementary import EPS
 from contact.flight.tip import hold, tip_state
 from contact.machine.compiled import kernel, part
-from contact.trajectory import GRAZE, IMPACT, OUTSIDE, STAY, SUSTAINED
+from contact.state import GRAZE, IMPACT, OUTSIDE, STAY, SUSTAINED
 
 MARKS = np.dtype([(name, "i8") for name in ("logged", "sampled", "strobed", "impacts", "touching", "row")])
 """Rows in use of log, samples and strobes, and impacts since the last strobe, all in the first record;
@@ -34,7 +34,7 @@ _WHOLE = ("stretch", "end_stretch", "kind", "stop", "together")
 TOUCH = np.dtype([(name, "i8" if name in _WHOLE else "f8") for name in _NAMES])
 """A touch: stretch and clock of its start and of its end [s], velocity towards the stop at both [m/s], energy
 given to the stop [J], impulse [N s] and largest force [N] (NaN if not known),
-``contact.trajectory.ImpactKind``, number of the stop, and whether others acted at this instant."""
+``contact.state.ImpactKind``, number of the stop, and whether others acted at this instant."""
 
 
 class Touches(NamedTuple):
@@ -114,7 +114,7 @@ STATE = np.dtype(
     [(name, "i8") for name in ("regime", "contact_order", "stop", "stretch", "evaluations", "steps")]
     + [(name, "f8") for name in ("clock", "wait", "rebound", "memory0", "memory1")]
 )
-"""The state of a motion besides its deviations: ``contact.trajectory.State`` for kernels.
+"""The state of a motion besides its deviations: ``contact.state.State`` for kernels.
 
 regime, wait, rebound: as there; contact_order: number of derivatives of the height over `stop` that vanish at
 the start of the flight; stop: number of the stop that is touched or was the last to be; stretch,

@@ -37,9 +37,9 @@ from contact.flight.polynomial_root import first_fall, first_polynomial_root, ho
 from contact.flight.tip import tip_rounding, tip_state, tip_sum
 from contact.machine.compiled import kernel, part
 from contact.machine.vector_loops import LANES, next_modes, weighted_rows
+from contact.state import CONTACT, INSIDE, OUTSIDE
 from contact.touch.exchange import exchange_of
 from contact.touch.series import WINDOW, add_modes, limited_by_force, log_longest, powers_of, product
-from contact.trajectory import CONTACT, INSIDE, OUTSIDE
 
 LAW, METHOD = "HertzContact, HuntCrossley or PowerContact", "contact-series"
 REGIMES = (OUTSIDE, CONTACT, INSIDE)

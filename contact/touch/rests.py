@@ -15,11 +15,11 @@ import numpy as np
 from contact.flight.numbers import DECAY, STACKED, WEIGHT, seen_from
 from contact.flight.tip import tip_rounding
 from contact.machine.compiled import kernel
+from contact.state import CONTACT, OUTSIDE, SUSTAINED
 from contact.touch.impulses import DEPENDENT, complementary
 from contact.touch.newton import STEADY_PULL, STEADY_WANTED, acceleration_rounding, low_hop
 from contact.touch.sets import CHANGES, IMPULSE, PASSIVE, fill
 from contact.touch.time_series import ORDER
-from contact.trajectory import CONTACT, OUTSIDE, SUSTAINED
 
 
 @kernel

@@ -17,7 +17,7 @@ import numpy as np
 
 from contact.flight.tip import tip_state
 from contact.machine.compiled import aligned, inlined, kernel, part
-from contact.trajectory import CONTACT
+from contact.state import CONTACT
 
 WINDOW = 8  # number of last orders of the force that limit a step
 LOOSE = 1.15  # largest ratio of a step to the bound by an earlier order: no two agree better

@@ -21,11 +21,11 @@ from contact.flight.numbers import DECAY, LOAD, NUMBERS, SQUARE, STACKED, WEIGHT
 from contact.flight.polynomial_root import first_polynomial_root
 from contact.flight.tip import tip_rounding, tip_state
 from contact.machine.compiled import aligned, kernel, part
+from contact.state import CONTACT, INSIDE, OUTSIDE, SUSTAINED
 from contact.touch.impulses import inverse_of
 from contact.touch.newton import acceleration_rounding
 from contact.touch.series import limited_by_force
 from contact.touch.time_series import EDGE, ORDER, OVERFLOW, longest_of_modes
-from contact.trajectory import CONTACT, INSIDE, OUTSIDE, SUSTAINED
 
 PASSIVE = 4  # order of a stop whose point rests because others hold it: it gives no force
 CHANGES, LEAVES = 1, 2

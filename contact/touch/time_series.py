@@ -14,9 +14,9 @@ from contact.flight.modal_flow import speed_scale
 from contact.flight.tip import tip_steady, tip_sum
 from contact.machine.compiled import kernel, part
 from contact.machine.vector_loops import next_order, weighted_rows
+from contact.state import INSIDE
 from contact.touch.exchange import UNIFORM, exchange_of
 from contact.touch.series import add_modes, limited_by_force, log_longest, powers_of
-from contact.trajectory import INSIDE
 
 ORDER = 30  # order of the series in time
 

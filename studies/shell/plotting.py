@@ -28,6 +28,7 @@ from typing import Any, ParamSpec, TypeVar
 
 import matplotlib
 import numpy as np
+from cycler import cycler
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis, XAxis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -59,11 +60,9 @@ LINES = ("-", "--", "-.", ":", (0, (5, 1)), (0, (3, 1, 1, 1)), (0, (1, 2)), (0, 
 NOTE = 7.0
 """Size of ticks, legends and notes inside a panel [pt]."""
 
-UP, DOWN = (BLUE, BLUE, 1.3, 3), (VERMILION, "none", 2.6, 2)
-"""Strobe points while the amplitude is raised and lowered: edge, face, size, order."""
-
-PALE = 0.35
-"""Share of the colour that is left where a motion did not settle: its points are of a moment."""
+UP: dict[str, Any] = {"color": BLUE, "markersize": 1.3, "zorder": 3}
+DOWN: dict[str, Any] = {"color": VERMILION, "markerfacecolor": "none", "markersize": 2.6, "zorder": 2}
+"""Strobe points while the amplitude is raised and lowered."""
 
 EXCESS, HYSTERESIS = "excess $F/F_g - 1$", "hysteresis $1 - F_m/F_g$"
 """Names of the two quantities that most axes show."""
@@ -85,6 +84,7 @@ STYLE: Any = {
     **dict.fromkeys(("legend.frameon", "axes.spines.top", "axes.spines.right"), False),
     "lines.linewidth": 1.0,
     "lines.markersize": 3.5,
+    "axes.prop_cycle": cycler(color=PALETTE[1:]),
     "axes.formatter.use_mathtext": True,
     "axes.formatter.useoffset": False,
     "pdf.fonttype": 42,
@@ -138,39 +138,6 @@ def series(number: int) -> Style:
 def points(number: int) -> Style:
     """Like `series`, without a line."""
     return {**series(number), "linestyle": "none"}
-
-
-def strobe_points(
-    axes: Axes,
-    amplitude: Array,
-    points: Array,
-    settled: NDArray[np.bool_],
-    look: tuple[str, str, float, int],
-    words: str,
-    pale: str = "",
-) -> None:
-    """Strobe `points`, shape (n_amplitudes, n_strobes), of a scan: `UP` or `DOWN`; pale where not settled."""
-    edge, face, size, order = look
-    dots: Style = {"linestyle": "none", "marker": "o", "markersize": size, "markeredgewidth": 0.4}
-    for kept, share in ((settled, 1.0), (~settled, PALE)):
-        fill = face if face == "none" else tint(face, share)
-        colours: Style = {"markeredgecolor": tint(edge, share), "markerfacecolor": fill}
-        name = words if share == 1.0 else pale if kept.any() else ""
-        places = np.repeat(amplitude[kept], points.shape[1]), points[kept].ravel()
-        axes.plot(*places, **dots, **colours, rasterized=True, zorder=order * share, label=name)
-
-
-def branch(
-    axes: Axes, sideways: Array, upwards: Array, stable: Array, admissible: Array, colour: str = BLUE
-) -> None:
-    """A branch of orbits in its order: solid where `stable`, else dashed; dotted where not `admissible`."""
-    looks = np.where(admissible, np.where(stable, 0, 1), 2)
-    words = "stable", "unstable", "no orbit: would touch a second time"
-    runs = np.split(np.arange(looks.size), np.flatnonzero(np.diff(looks)) + 1)
-    for run in sorted(runs, key=lambda run: int(looks[run[0]])):  # in the order of the legend
-        k, shown = looks[run[0]], slice(run[0], run[-1] + 2)  # on to the next one: the line has no gap
-        style: Style = {"color": tint(colour, 0.5) if k == 2 else colour, "label": words[k]}
-        axes.plot(sideways[shown], upwards[shown], ("-", "--", ":")[k], **style)
 
 
 def tint(colour: str, share: float) -> str:

@@ -12,8 +12,8 @@ from contact.engine.start import start_of
 from contact.flight.elementary import EPS
 from contact.maps.strobed_motion import strobed_system
 from contact.one_mode.loop import one_mode_periods
+from contact.state import IMPACT
 from contact.touch.passage import TOUCH
-from contact.trajectory import IMPACT
 
 GAP = 0.01
 OMEGA = 2.0 * math.pi / 40.80e-3

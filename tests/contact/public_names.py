@@ -3,7 +3,7 @@
 import importlib
 import inspect
 
-DOORS = ("beam", "beam.space", "contact", "contact.orbits", "contact.integrators")
+DOORS = ("beam", "beam.space", "contact", "contact.orbits", "contact.integrators", "contact.plots")
 """Where studies get names from: what these export, and nothing behind them."""
 
 

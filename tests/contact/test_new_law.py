@@ -25,7 +25,7 @@ from contact.flight.polynomial_root import first_polynomial_root
 from contact.laws import ContactLaw
 from contact.machine.compiled import kernel, part
 from contact.touch.time_series import DEPTH, FORCE, ORDER, begin, extend, longest_step
-from contact.trajectory import CONTACT, OUTSIDE
+from contact.state import CONTACT, OUTSIDE
 
 LAW, METHOD, REGIMES = "OwnContact", "cubic-series", (OUTSIDE, CONTACT)
 

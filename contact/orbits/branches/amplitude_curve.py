@@ -6,6 +6,7 @@ Its unknowns are the deviations and the logarithm of the approach velocity of th
 
 import math
 from collections.abc import Iterator
+from contextlib import suppress
 
 from beam.parameters import Array
 from beam.record import record
@@ -84,7 +85,7 @@ def branch_ended(orbit: PeriodicOrbit, words: str) -> BranchEnded:
 
 def downhill(family: NewtonFamily, start: PeriodicOrbit) -> Iterator[Leg]:
     """The legs of the branch from `start` towards lower amplitudes."""
-    curve = _curve_through(start, family)
+    curve = curve_through(start, family)
     first = curve.start()
     first = first if first.rate <= 0.0 else first.oriented(-first.direction)
     return walk(curve, first, LONGEST_STRIDE, FIRST_STRIDE)
@@ -96,11 +97,20 @@ def at_graze(ended: str, last: PeriodicOrbit) -> bool:
     return slow or (ended not in ("range", "closed") and grazes(last))
 
 
-def _curve_through(orbit: PeriodicOrbit, family: NewtonFamily) -> AmplitudeCurve:
+def curve_through(orbit: PeriodicOrbit, family: NewtonFamily) -> AmplitudeCurve:
     """The curve of a family through `orbit`, over the speeds of a search and from below to above its own."""
     low, high = (part * family.oscillator.unit_speed for part in (LEAST_SPEED, GREATEST_SPEED))
     low, high = min(low, 0.5 * orbit.speed), max(high, 2.0 * orbit.speed)
     return AmplitudeCurve(like=orbit, family=family, slowest=low, fastest=high, far=FAR)
+
+
+def entered(family: NewtonFamily, near: PeriodicOrbit | None = None) -> PeriodicOrbit:
+    """An orbit of the family: next to `near`, or else at the first of the speeds `STARTS` that has one."""
+    unit = family.oscillator.unit_speed
+    for speed in [near.speed] if near is not None else [part * unit for part in STARTS]:
+        with suppress(ContactError):
+            return family.at_speed(speed, near)
+    raise BranchEnded(detail=f"no orbit of period {family.m} was found to start from")
 
 
 def whole_branch(
@@ -110,24 +120,16 @@ def whole_branch(
 
     Raises BranchEnded if there is no orbit to start from, or if the branch is lost on the way.
     """
-    unit = family.oscillator.unit_speed
-    for speed in [near.speed] if near is not None else [part * unit for part in STARTS]:
-        try:
-            here = family.at_speed(speed, near)
-        except ContactError:
-            continue
-        curve = _curve_through(here, family)
-        try:
-            branch, points = branch_of(curve, curve.start(), LONGEST_STRIDE, LONGEST_STRIDE)
-        except ContactError as error:
-            raise branch_ended(here, f"it cannot be followed: {error}") from error
-        for ended, last in ((branch.ended_low, branch.orbits[0]), (branch.ended_high, branch.orbits[-1])):
-            if ended not in WHOLE and not grazes(last):
-                raise branch_ended(last, f"it is lost: {ended}")
-            rise = last.slope * last.speed / (1.0 + last.excess)
-            if math.isclose(last.speed, curve.fastest) and rise < PROPORTIONAL:
-                raise branch_ended(
-                    last, "at the greatest speed of the search the amplitude does not yet rise"
-                )
-        return curve, points, branch
-    raise BranchEnded(detail=f"no orbit of period {family.m} was found to start from")
+    here = entered(family, near)
+    curve = curve_through(here, family)
+    try:
+        branch, points = branch_of(curve, curve.start(), LONGEST_STRIDE, LONGEST_STRIDE)
+    except ContactError as error:
+        raise branch_ended(here, f"it cannot be followed: {error}") from error
+    for ended, last in ((branch.ended_low, branch.orbits[0]), (branch.ended_high, branch.orbits[-1])):
+        if ended not in WHOLE and not grazes(last):
+            raise branch_ended(last, f"it is lost: {ended}")
+        rise = last.slope * last.speed / (1.0 + last.excess)
+        if math.isclose(last.speed, curve.fastest) and rise < PROPORTIONAL:
+            raise branch_ended(last, "at the greatest speed of the search the amplitude does not yet rise")
+    return curve, points, branch

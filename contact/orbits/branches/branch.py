@@ -6,24 +6,34 @@ sentence says why.  Where the tip gains or loses a touch, a curve with `admissib
 number of touches.  Such a neighbour exists under a law whose force is continuous.
 """
 
+from __future__ import annotations
+
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
-from typing import NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from beam.record import record
+from contact import plots
 from contact.errors import ContactError
 from contact.orbits.branches.curve import BEND, CROSSING, Curve, grazes
 from contact.orbits.branches.events import CLOSE, Event, event_at, events_between, refined, with_undecided
 from contact.orbits.families.newton import CurvePoint
 from contact.orbits.families.touch_orbit import NEARLY, PeriodicOrbit
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
 SMALLEST, MOST_STEPS = 1e-9, 5000
 """Step of arc length at which a branch is given up and to which a graze is located; and bound of steps."""
 
 ACROSS = tuple(10.0**-k for k in range(9, 2, -1))
 """Steps tried from a grazing orbit to the first one with another number of touches."""
+
+FEW, DEPTHS, SLOW = 4, 3.0, 1e-3
+"""Events that are printed; end of a picture above grazing, in depths of the branch below it; its slowest
+touch over the fastest one."""
 
 SHORTER = "the orbit becomes one of a shorter period, which runs through it several times"
 
@@ -52,6 +62,40 @@ class Branch:
     ended_low: str
     ended_high: str
     parameters: tuple[float, ...] = ()
+
+    def __repr__(self) -> str:
+        """Number of its orbits, and the first events."""
+        good = sum(orbit.stable and orbit.admissible for orbit in self.orbits)
+        named = [f"{event.kind} at {event.parameter:#.3g}" for event in self.events[:FEW]]
+        more = [f"{len(self.events) - FEW} events more"] if len(self.events) > FEW else []
+        words = f"Branch({len(self.orbits)} orbits, {good} stable and admissible"
+        return f"{words}; {', '.join([*named, *more]) or 'no event'})"
+
+    def plot(self, axes: Axes | None = None, **look: Any) -> Axes:
+        """Draw the approach speed [mm/s] of the orbits against the excess, or the parameter of a path.
+
+        Stable orbits are solid and unstable ones dashed; an orbit that is not admissible is a pale dotted
+        line, as it would touch a second time.  Dots name the events.  The picture of a branch over the excess
+        ends at three times its depth below grazing, and at slow touches; `set_xlim` and `set_ylim` show more.
+        It draws on `axes` of matplotlib, or on those of a new figure, and returns them; `look` are properties
+        of the lines.
+        """
+        places = self.parameters or [orbit.excess for orbit in self.orbits]
+        stable, admissible, speeds = zip(
+            *((orbit.stable, orbit.admissible, 1e3 * orbit.speed) for orbit in self.orbits), strict=True
+        )
+        axes = plots.branch(axes, places, speeds, stable, admissible, **look)
+        for event in self.events:
+            place = event.parameter or 0.0, 1e3 * event.orbit.speed
+            axes.plot(*place, "o", color="black", markersize=3.5)
+            axes.annotate(event.kind, place, (4.0, -8.0), textcoords="offset points", annotation_clip=True)
+        axes.set(yscale="log", ylabel="approach speed (mm/s)")
+        axes.set_xlabel("parameter of the path" if self.parameters else "excess $F/F_g - 1$")
+        if not self.parameters and min(places) < 0.0:
+            far = -DEPTHS * min(places)
+            fastest = max(speed for place, speed in zip(places, speeds, strict=True) if place <= far)
+            axes.set(xlim=(1.1 * min(places), far), ylim=(SLOW * fastest, 1.5 * fastest))
+        return axes
 
     def of_kind(self, kind: str) -> list[PeriodicOrbit]:
         """The orbits at the events of one kind."""

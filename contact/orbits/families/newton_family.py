@@ -23,7 +23,7 @@ from contact.orbits.families.touch_orbit import PeriodicOrbit
 from contact.oscillator import ImpactOscillator
 from contact.sensitivity.change import Sensitivities
 from contact.simulation import simulate
-from contact.trajectory import ImpactKind, Regime, State
+from contact.state import ImpactKind, Regime, State
 
 
 @record
@@ -117,6 +117,13 @@ class NewtonFamily:
         i = int(np.flatnonzero(hits)[0])
         start = self.unknowns(trajectory.impacts.deviations_start[i].ravel(), trajectory.impacts.approach[i])
         return self._solve(start, excess=self.oscillator.excess)
+
+
+def require_family(family: NewtonFamily, near: object = None) -> None:
+    """Refuse what is no family to follow, and a `near` that is neither an orbit near it nor None."""
+    require_kind("family", family, NewtonFamily, "a Shooting family")
+    if near is not None:
+        require_orbit(family, "near", near)
 
 
 def require_orbit(family: NewtonFamily, name: str, orbit: object, *, member: bool = False) -> None:

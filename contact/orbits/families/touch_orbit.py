@@ -21,8 +21,8 @@ from contact.flight.tip import tip_state
 from contact.flight.tip_search import peaks_of_flight, tip_at
 from contact.oscillator import ImpactOscillator
 from contact.simulation import simulate
+from contact.state import State
 from contact.touch.passage import Touches
-from contact.trajectory import State
 
 Failure = TypeVar("Failure", bound=ContactError)
 CLOSING = 1e-9  # part of a flight by which it is prolonged, so that the touch at its end is met

@@ -37,8 +37,8 @@ from contact.maps.stroboscope import StroboscopicMap
 from contact.orbits.observation.repetition import free_for_good, repetition
 from contact.orbits.observation.settling import TOLERANCE
 from contact.oscillator import ImpactOscillator, require_one_stop
+from contact.state import OUTSIDE
 from contact.touch.passage import STATE
-from contact.trajectory import OUTSIDE
 
 LARGEST_M = 64  # longest period that is recognised
 SHORTEST = 16  # strobes that have to repeat at least, twice the letter's common periods

@@ -22,7 +22,7 @@ from contact.maps.stroboscope import StroboscopicMap
 from contact.orbits.observation.repetition import require_orbit
 from contact.sensitivity.change import Change
 from contact.sensitivity.derivatives import motion_derivatives
-from contact.trajectory import State
+from contact.state import State
 
 Strobed = StroboscopicMap | NordmarkMap
 

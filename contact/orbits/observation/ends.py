@@ -24,7 +24,8 @@ from contact.maps.nordmark import NordmarkMap
 from contact.maps.nordmark_orbits import MapFamily
 from contact.maps.protocol import require_map
 from contact.maps.stroboscope import StrobedMap, StroboscopicMap
-from contact.orbits.branches.continuation import first_event, fold_of_the_kicks
+from contact.orbits.branches.continuation import first_event
+from contact.orbits.branches.folds import fold_of_the_kicks
 from contact.orbits.families.protocol import Family
 from contact.orbits.families.single_impact import MaximalFamily
 from contact.orbits.families.touch_orbit import PeriodicOrbit

@@ -5,17 +5,23 @@ at each and records 40 strobe points.  Because the state is carried along, the s
 spring stays on its orbit until that orbit ends.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable, Sequence
-from typing import Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 import numpy as np
 
 from beam.parameters import require, require_array, require_kind, require_whole
 from beam.record import record
+from contact import plots
 from contact.errors import ContactError
 from contact.maps.protocol import StrobedMap, require_map
 from contact.orbits.observation.repetition import repeats_after
 from contact.orbits.observation.settling import TOLERANCE, settle
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 S = TypeVar("S")
 
@@ -52,6 +58,16 @@ class OrbitDiagram(Generic[S]):
     cycles: np.ndarray
     failures: tuple[str, ...]
     end: S
+
+    def plot(self, axes: Axes | None = None, **look: Any) -> Axes:
+        """Draw the observed quantity at the strobes against the excess; pale where no orbit was reached.
+
+        It draws on `axes` of matplotlib, or on those of a new figure, and returns them; `look` are properties
+        of the points.
+        """
+        axes = plots.strobes(axes, self.excess, self.points, self.m > 0, **look)
+        axes.set(xlabel="excess $F/F_g - 1$", ylabel="observed at the strobes")
+        return axes
 
     @property
     def kind(self) -> list[str]:

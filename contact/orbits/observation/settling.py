@@ -28,7 +28,7 @@ from contact.maps.stroboscope import StrobedMap, StrobedOrbit, StroboscopicMap
 from contact.orbits.families.touch_orbit import PeriodicOrbit
 from contact.orbits.observation.repetition import free_for_good, repeats_after
 from contact.orbits.shooting import Shooting
-from contact.trajectory import State
+from contact.state import State
 
 S = TypeVar("S")
 

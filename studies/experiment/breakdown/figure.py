@@ -6,6 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
+from contact import plots
 from studies.experiment.breakdown.model import BORN_PERIOD, CHAOS_AT, HIGHEST, Cell, Outcome, periods
 from studies.physics.descriptions import Diagram
 from studies.shell import plotting
@@ -20,9 +21,14 @@ BORN = (
     "print: the mass of ball and mount, and the damping of the higher modes."
 )
 LOOKS = {
-    "up": (UP, "upward scan"),
-    "down": (DOWN, "downward scan"),
-    "island": (("0.55", "0.55", 0.8, 1), "island, followed upwards from its fold"),
+    "up": {**UP, "label": "upward scan"},
+    "down": {**DOWN, "label": "downward scan"},
+    "island": {
+        "color": "0.55",
+        "markersize": 0.8,
+        "zorder": 1,
+        "label": "island, followed upwards from its fold",
+    },
 }
 
 
@@ -46,10 +52,8 @@ def draw_scans(
     for number, (pair, (outcome, ways)) in enumerate(zip(axes, panels, strict=True)):
         for axis in pair:
             for way, diagram in ways.items():
-                look, words = LOOKS[way]
                 settled = (periods(diagram) > 0) | (way == "island")
-                named, x = (look, words, "pale: not settled"), 1e2 * diagram.excess
-                plotting.strobe_points(axis, x, 1e3 * diagram.points, settled, *named)
+                plots.strobes(axis, 1e2 * diagram.excess, 1e3 * diagram.points, settled, **LOOKS[way])
             axis.axvline(0.0, **GUIDE, label="grazing")
         pair[0].set_xlim(1e2 * min(float(d.excess.min()) for d in ways.values()) - 0.3, 0.02)
         pair[1].set_xlim(-0.03, 1e2 * HIGHEST + 0.03)

@@ -19,7 +19,7 @@ from matplotlib.patheffects import withStroke
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from contact import Band
+from contact import Band, plots
 from studies.experiment.chart.model import Fold, Plane, sheared
 from studies.experiment.chart.settled import (
     CHAOTIC,
@@ -166,8 +166,8 @@ def draw_scan(
             mine = [k for k, row in enumerate(rows) if (row.model, row.direction) == (name, way)]
             excess, points = np.array([rows[k].excess for k in mine]), np.array([strobes[k] for k in mine])
             settled = np.array([rows[k].m > 0 for k in mine])
-            words = f"{way}ward scan", "pale: not periodic"
-            plotting.strobe_points(upper, 1e2 * excess, 1e3 * points, settled, look, *words)
+            words = {"label": f"{way}ward scan", "pale": "pale: not periodic"}
+            plots.strobes(upper, 1e2 * excess, 1e3 * points, settled, **look, **words)
         for kind, (marker, colour) in LOOKS.items():
             alike = [(1e2 * r.excess, r.lyapunov_map) for r in rows if (r.model, r.kind) == (name, kind)]
             mark: plotting.Style = {"markersize": 3.4, "mfc": "none", "markeredgecolor": colour}

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from contact import Band, NordmarkMap, frequency_band
+from contact import Band, NordmarkMap, frequency_band, plots
 from studies import letter
 from studies.experiment.hysteresis.model import FREQUENCIES_HZ, Folds, OnBranch
 from studies.shell import plotting
@@ -105,7 +105,7 @@ def draw_branch(rows: Sequence[OnBranch], frequency: float, m: int) -> Figure:
     figure, axis = plotting.new_figure(height=0.072)
     excess, speed = np.array([(1e2 * row.excess, 1e3 * row.speed) for row in shown]).T
     stable, admissible = np.array([(row.stable, row.admissible) for row in shown]).T
-    plotting.branch(axis, excess, speed, stable, admissible)
+    plots.branch(axis, excess, speed, stable, admissible)
     axis.axvline(0.0, **GUIDE, label="grazing")
     for place, row in enumerate(shown):
         if row.event:

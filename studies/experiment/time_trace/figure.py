@@ -7,9 +7,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from contact import Stop
+from contact import Stop, plots
 from studies.experiment.time_trace.model import CloseUp, Trace
 from studies.shell import plotting
+from studies.shell.scene import READOUT
 
 Array = NDArray[np.float64]
 
@@ -18,7 +19,6 @@ APART = 8.0  # least distance of two modes that are both numbered [pt]
 MOST_DRAWN = 4_000  # points of a line: more than a page has dots
 
 MARK = {"color": plotting.VERMILION, "linewidth": 0.6, "linestyle": ":", "zorder": 1}
-OF_STOPS = plotting.PALETTE[2:]  # colours of the marks of impacts, by the number of the stop
 
 
 @plotting.in_house_style
@@ -31,24 +31,15 @@ def draw_trace(trace: Trace, near: CloseUp | None, stops: Sequence[Stop], unit: 
     }
     figure, axes = plotting.new_figure(2, 2 if near else 1, width=plotting.PAGE, height=0.095, **shared)
     (tip, readout), step = axes[:, 0], max(1, trace.time.size // MOST_DRAWN)
-    for number, (axis, shown) in enumerate(((tip, trace.tip), (readout, trace.readout))):
-        motion: plotting.Style = {"color": plotting.BLUE, "linewidth": 0.8, "label": "motion"}
-        axis.plot(1e3 * trace.time[::step], 1e3 * shown[::step], **motion)
-        axis.margins(x=0.0)
-        for at, touch in zip(1e3 * trace.impact_times, trace.impacts, strict=True):
-            where = f" on plate {touch.stop}" if len(stops) > 1 else ""
-            colour = OF_STOPS[touch.stop % len(OF_STOPS)]
-            axis.axvline(at, **{**MARK, "color": colour}, label=f"impact{where}")
+    hits = [(at, touch.stop) for at, touch in zip(1e3 * trace.impact_times, trace.impacts, strict=True)]
+    time, sides = 1e3 * trace.time[::step], [("tip", tip, trace.tip), (READOUT, readout, trace.readout)]
+    for number, (at, axis, shown) in enumerate(sides):
+        places = {k: 1e3 * stop.side * stop.gap for k, stop in enumerate(stops) if stop.at == at}
+        plots.motion(axis, time, 1e3 * shown[::step], places, hits, linewidth=0.8)
         plotting.panel(axis, number, (f"ball: {title}", "read-out point")[number])
     plotting.label(tip.yaxis, "ball", "mm")
     plotting.label(readout.yaxis, "rotation" if unit == "rad" else "read-out", f"m{unit}")
     plotting.label(readout.xaxis, "time", "ms")
-    for number, stop in enumerate(stops):
-        axis, place = tip if stop.at == "tip" else readout, 1e3 * stop.side * stop.gap
-        axis.axhline(place, **plotting.GUIDE, label="plate")
-        if len(stops) > 1:
-            beside = {"transform": axis.get_yaxis_transform(), "fontsize": plotting.NOTE, "va": "center"}
-            axis.text(1.005, place, f"plate {number}", **beside)
     if near:
         _collision(axes[:, 1], near)
     plotting.legend_below(figure, axes.flat, 5)

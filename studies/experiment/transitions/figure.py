@@ -7,6 +7,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from contact import plots
 from studies import letter
 from studies.experiment.transitions.model import Scans, Transition
 from studies.physics.descriptions import TITLES, Diagram
@@ -64,8 +65,8 @@ def panel(axis: Axes, row: Transition, found: Mapping[str, Diagram], letters: bo
         beside = (diagram.excess < 0.0) & ~np.isin(diagram.m, (1, row.m or 0))
         moving |= {a for a, kind in zip(amplitude, diagram.kind, strict=True) if kind == "not settled"}
         points = diagram.points[settled] * (1.0 if grazing is None else 1e3)
-        words = f"{way}ward scan", "pale: orbit with several impacts"
-        plotting.strobe_points(axis, amplitude[settled], points, ~beside[settled], look, *words)
+        words = {"label": f"{way}ward scan", "pale": "pale: orbit with several impacts"}
+        plots.strobes(axis, amplitude[settled], points, ~beside[settled], **look, **words)
     for place, value in enumerate(sorted(moving)):
         axis.axvline(value, color="0.75", linewidth=0.5, zorder=1, label="_" if place else "not settled")
     at = 0.0 if grazing is None else 1e3 * grazing
