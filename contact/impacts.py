@@ -144,10 +144,10 @@ class Impacts:
         if not len(self):
             return f"{words})"
         words += f" from {self.start[0]:.6g} to {self.start[-1]:.6g} s"
-        most = {"approach up to": ("m/s", self.approach), "peak force up to": ("N", self.peak_force)}
-        known = {name: (unit, values[np.isfinite(values)]) for name, (unit, values) in most.items()}
-        found = [f"{name} {x.max():.6g} {unit}" for name, (unit, x) in known.items() if x.size]
-        return ", ".join([words, *found]) + ")"
+        for name, values in (("approach", self.approach), ("peak_force", self.peak_force)):
+            known = values[np.isfinite(values)]
+            words += f", {name}<={known.max():.6g} {CSV[name]}" if known.size else ""
+        return f"{words})"
 
     def _repr_html_(self) -> str:
         """The first touches, a row each."""

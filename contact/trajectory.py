@@ -88,9 +88,8 @@ class Trajectory:
 
     def __repr__(self) -> str:
         """How long it is, and what it holds."""
-        last, modes = f"{self.end.time:.6g} s", self.oscillator.n_modes
-        words = f"{self.strobe_time.size} strobes to {last}, {self.time.size} samples, {modes} modes"
-        return f"Trajectory({words}, {self.impacts})"
+        counts = f"modes={self.oscillator.n_modes}, strobes={self.strobe_time.size}, samples={self.time.size}"
+        return f"Trajectory(end={self.end.time:.6g} s, {counts}\n    impacts={self.impacts})"
 
     def _repr_html_(self) -> str:
         """The same words, and the first impacts in rows."""

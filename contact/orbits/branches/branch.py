@@ -69,7 +69,7 @@ class Branch:
         named = [f"{event.kind} at {event.parameter:#.3g}" for event in self.events[:FEW]]
         more = [f"{len(self.events) - FEW} events more"] if len(self.events) > FEW else []
         words = f"Branch({len(self.orbits)} orbits, {good} stable and admissible"
-        return f"{words}; {', '.join([*named, *more]) or 'no event'})"
+        return f"{words}\n    {', '.join([*named, *more]) or 'no event'})"
 
     def plot(self, axes: Axes | None = None, **look: Any) -> Axes:
         """Draw the approach speed [mm/s] of the orbits against the excess, or the parameter of a path.

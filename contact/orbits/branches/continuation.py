@@ -71,7 +71,8 @@ def follow(
     >>> stop, drive = Stop(gap=11.9e-3, law=law), HarmonicDrive(frequency=21.5)
     >>> family = Shooting(oscillator=ImpactOscillator(model=spring, stop=stop, drive=drive), m=4)
     >>> follow(family, family.at_speed(0.6), low=0.2, high=2.0)
-    Branch(26 orbits, 9 stable and admissible; fold at -0.00730, grazing at 0.0121)
+    Branch(26 orbits, 9 stable and admissible
+        fold at -0.00730, grazing at 0.0121)
     """
     require_family(family)
     if start is not None:
