@@ -84,8 +84,8 @@ def sweep(
     given = {"over": over, "start": start, "frequency": frequency, "excess": excess, "amplitude": amplitude}
     plan = plan_of(scene, given)
     scene = run.choose_modes(*plan.with_modes(scene))
-    drive = ", ".join(f"{DRIVE[name].meaning} {in_units(name, value)}" for name, value in plan.fixed.items())
-    run.say(f"{drive}; each motion starts {STARTS[start]}")
+    drive = ", ".join(f"{name} {in_units(name, value)}" for name, value in plan.fixed.items())
+    run.say(f"{drive}{'; ' * bool(drive)}each motion starts {STARTS[start]}")
     settings = {"over": over, "start": start, "fixed": plan.fixed, "scene": scene.values()}
     name = "-".join([start, *(f"{axis.name}-{len(axis.values)}" for axis in plan.axes)])
     work = partial(column_of, scene=scene, start=start)
@@ -94,7 +94,9 @@ def sweep(
     kind = kind_of(plan.axes)
     rows = rows_of(plan.axes, cells, kind)
     shown = [entry.name for entry in fields(kind) if entry.name not in ("carried", "reason")]
-    run.table("sweep", rows, "The cells of the sweep.", of=kind, show=shown if len(rows) <= MOST_SHOWN else ())
+    run.table(
+        "sweep", rows, "The cells of the sweep.", of=kind, show=shown if len(rows) <= MOST_SHOWN else ()
+    )
     note_failures(run, failures(plan.axes, rows))
     if len(plan.axes) == 2:
         holds = (

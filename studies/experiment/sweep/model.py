@@ -31,6 +31,8 @@ WITHOUT = 64  # drive periods whose numbers are given where a motion has no peri
 
 MOST_COLUMNS = 256  # files of finished cells, where any cell can be computed alone
 
+ROUNDING = 1e-12  # energy lost over impulse times speed below which a law loses none
+
 REST = "rest"
 UNUSED = ("single_mode", "scan")  # sections that do not change the motion of the beam
 
@@ -212,6 +214,7 @@ def settled_cell(oscillator: ImpactOscillator, state: State | None, most_cycles:
     periods = settled.m or WITHOUT
     run = simulate(oscillator, end, periods=periods)
     touches, driven = run.impacts, oscillator.driven
+    lost, given = np.sum(touches.loss), np.nansum(np.abs(touches.impulse * touches.approach))
     cell = Cell(
         frequency_hz=driven.frequency,
         excess=oscillator.excess,
@@ -220,7 +223,7 @@ def settled_cell(oscillator: ImpactOscillator, state: State | None, most_cycles:
         impacts=int(np.sum(touches.kind == ImpactKind.IMPACT)),
         peak_force=float(np.fmax.reduce(touches.peak_force)) if len(touches) else 0.0,
         approach=float(np.fmax.reduce(touches.approach, initial=np.nan)),
-        energy_lost=float(np.sum(touches.loss)) / periods,
+        energy_lost=float(lost) / periods if abs(lost) > ROUNDING * given else 0.0,
         carried=state is not None,
         reason="",
     )
@@ -234,6 +237,7 @@ def column_of(cells: Sequence[Values], scene: Scene, start: str) -> Column:
     for cell in cells:
         try:
             numbers, end = settled_cell(oscillator_at(scene_of(scene, cell), cell), state, most)
+            numbers = replace(numbers, excess=cell.get("excess", numbers.excess))
             state = None if start == REST else end
         except (ContactError, Refusal) as error:
             numbers = failed_cell(cell, str(error) or type(error).__name__)
