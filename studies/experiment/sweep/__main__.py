@@ -38,7 +38,7 @@ from studies.shell.sweep import sweep as stored
 
 CAPTION = (
     "Settled motion over the swept numbers: period, impacts, largest force, greatest approach speed, and "
-    "energy lost at the stops in a drive period."
+    "energy lost at the stops in a drive period. Grey cells have none of them."
 )
 
 MOST_SHOWN = 100  # cells on the terminal; all are in the table
@@ -157,9 +157,10 @@ def findings(run: Run, plan: Plan, cells: Mapping[str, np.ndarray]) -> None:
         if np.any(cells["peak_force"] > 0.0):
             most = written(float(np.nanmax(cells["peak_force"])), 3)
             run.finding(f"The largest contact force of the sweep is {most} N.")
-    anew = int(np.sum(done & ~cells["carried"])) - done.shape[0]
-    if plan.start != REST and anew > 0:
-        run.say(f"{anew} cells begin from rest: the motion before them cannot start there or has failed")
+    later = np.s_[:, :-1] if plan.start == "down" else np.s_[:, 1:]
+    anew = np.sum(done[later] & ~cells["carried"][later])
+    if plan.start != REST and anew:
+        run.say(f"cells that begin from rest, as the motion before cannot start there: {anew}")
     for axis, name in enumerate(one.name for one in plan.axes):
         along = [np.moveaxis(cells[key], 1 - axis, 0) for key in NUMBERS if key not in ("carried", "reason")]
         if len(along[0]) > 1 and all(np.all((v == v[:1]) | (v != v) & (v[:1] != v[:1])) for v in along):

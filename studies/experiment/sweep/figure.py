@@ -97,7 +97,7 @@ def _name(panel: Axes, number: int, what: str, values: np.ndarray) -> None:
     """Name a panel, and say so where it shows nothing."""
     plotting.panel(panel, number, what)
     if not np.any(values > 0.0):
-        style = {"ha": "center", "fontsize": plotting.NOTE, "transform": panel.transAxes}
+        style: plotting.Style = {"ha": "center", "fontsize": plotting.NOTE, "transform": panel.transAxes}
         panel.text(0.5, 0.5, "nowhere above zero", **style)
 
 

@@ -17,7 +17,7 @@ from typing import Annotated
 import numpy as np
 
 from beam import InvalidValue, Refusal
-from contact import ContactError, ImpactKind, ImpactOscillator, State, StroboscopicMap, simulate
+from contact import ContactError, ImpactKind, ImpactOscillator, Regime, State, StroboscopicMap, simulate
 from contact.orbits import settle
 from studies.experiment.period_map import SimulatedMap
 from studies.physics.least_model import ALWAYS, least_modes
@@ -69,13 +69,15 @@ class Axis:
 def axis_of(text: str) -> Axis:
     """The axis in KEY=FROM:TO:N or KEY=FROM:TO:N:log."""
     name, _, span = (part.strip() for part in text.partition("="))
+    if name not in DRIVE and "." not in name:
+        raise InvalidValue(f"over is {shown(text)}; it must name a key of a scene, {' or '.join(DRIVE)}")
     known = DRIVE.get(name) or KEYS[".".join(split(name))]
     if name.partition(".")[0] in UNUSED or type(known.default) not in (int, float):
         raise SceneError(name, "cannot be swept; over needs a key that is a number and moves the beam")
     try:
         first, last, count, *form = (part.strip() for part in span.split(":"))
         (low, high), number, even = sorted([float(first), float(last)]), int(count), form != ["log"]
-        if form not in ([], ["log"]):
+        if form not in ([], ["log"]) or "_" in span:
             raise ValueError
     except ValueError:
         words = "it must be KEY=FROM:TO:N, or KEY=FROM:TO:N:log for equal ratios"
@@ -111,7 +113,8 @@ class Plan:
         if both := sorted({name for name in given if given.count(name) > 1}):
             raise InvalidValue(f"{both[0]} is given and swept: leave out one of them")
         if {"excess", "amplitude"} <= {*given}:
-            raise InvalidValue("excess and amplitude are both given or swept: leave out one of them")
+            words = "over sweeps the excess by default; leave out one of them"
+            raise InvalidValue(f"excess and amplitude are both given or swept: {words}")
 
     def columns(self) -> list[list[Values]]:
         """The cells by what is computed together: the first axis where the state is carried, else few."""
@@ -194,20 +197,23 @@ def oscillator_at(scene: Scene, cell: Values) -> ImpactOscillator:
     return oscillator.with_excess(cell["excess"])
 
 
+def can_start(oscillator: ImpactOscillator, state: State) -> bool:
+    """Whether a motion without contact lies before all stops, and the number of modes is the same."""
+    if state.displacement.size != oscillator.n_modes:
+        return False
+    touching = any(regime != Regime.OUTSIDE for regime in state.regimes.values())
+    return touching or bool(oscillator.heights(state.displacement).max() <= 0.0)
+
+
 def settled_cell(oscillator: ImpactOscillator, state: State | None, most_cycles: int) -> tuple[Cell, State]:
     """The cell of the motion from `state`, or from rest if it is None or cannot start there; and its end."""
     several = len(oscillator.stops) > 1
     strobed = (SimulatedMap if several else StroboscopicMap)(oscillator=oscillator)
-    if state is not None and state.displacement.size == oscillator.n_modes:
-        free = not state.regimes and oscillator.heights(state.displacement).max() > 0.0
-        state = None if free else state  # the stop has come nearer than the tip
-    elif state is not None:
-        state = None
-    begin = State.rest(oscillator.n_modes) if state is None else state
+    started = state if state is not None and can_start(oscillator, state) else None
     try:
-        settled = settle(strobed, begin, most_cycles=most_cycles)
+        settled = settle(strobed, started or State.rest(oscillator.n_modes), most_cycles=most_cycles)
     except Refusal:
-        if state is None:
+        if started is None:
             raise
         return settled_cell(oscillator, None, most_cycles)
     end = replace(settled.end, time=0.0)
@@ -224,7 +230,7 @@ def settled_cell(oscillator: ImpactOscillator, state: State | None, most_cycles:
         peak_force=float(np.fmax.reduce(touches.peak_force)) if len(touches) else 0.0,
         approach=float(np.fmax.reduce(touches.approach, initial=np.nan)),
         energy_lost=float(lost) / periods if abs(lost) > ROUNDING * given else 0.0,
-        carried=state is not None,
+        carried=started is not None,
         reason="",
     )
     return cell, end if settled.m else replace(run.end, time=0.0)
