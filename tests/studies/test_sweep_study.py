@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 from contact import ImpactKind, State, simulate
-from studies.experiment.sweep.model import axis_of, column_of, oscillator_at
+from studies.experiment.sweep.model import axis_of, can_start, column_of, oscillator_at
 from studies.shell.scene import read_scene
 
 HERE = {"frequency": 21.5, "excess": 0.012}
 ONE_MODE = ["--set", "modes.count=1", "--set", "contact.law=newton", "--set", "contact.local_restitution=0.1"]
-CROSSED = ["--over", "excess=-0.02:0.012:5", *ONE_MODE]  # fold of p4 at -0.0132, grazing at 0
+CROSSED = ["--over", "excess=-0.02:0.008:15", *ONE_MODE]  # fold of p4 at -0.0132, grazing at 0
 
 
 def one_cell(scene, cell) -> dict:
@@ -29,9 +29,9 @@ def test_under_newtons_law_the_energy_lost_is_that_of_the_speeds():
     found = one_cell(scene, HERE)
     oscillator, run = followed(scene, HERE, found["m"])
     touches, mass = run.impacts, 1.0 / oscillator.model.phi[0] ** 2
-    assert (found["m"], found["impacts"]) == (4, len(touches)) and np.isnan(found["peak_force"])
+    assert found["impacts"] == len(touches) > 0 and np.isnan(found["peak_force"])
     lost = 0.5 * mass * np.sum(touches.approach**2 - touches.rebound**2)
-    assert 4 * found["energy_lost"] == pytest.approx(lost, rel=1e-6) and lost > 0.0
+    assert found["m"] * found["energy_lost"] == pytest.approx(lost, rel=1e-6) and lost > 0.0
     assert found["approach"] == pytest.approx(touches.approach.max(), rel=1e-6)
     assert found["amplitude_m"] == pytest.approx(1.012 * oscillator.grazing_amplitude())
 
@@ -56,26 +56,29 @@ def test_a_state_that_is_carried_keeps_its_orbit_between_fold_and_grazing(run_st
     for start in ("rest", "up", "down"):
         ran = run_study("sweep", *CROSSED, "--over", "frequency=21.4:21.5:2", "--start", start)
         rows, arrays = ran.rows("sweep"), ran.arrays("sweep")
-        assert ran.code == 0 and arrays["m"].shape == (2, 5)
+        assert ran.code == 0 and arrays["m"].shape == (2, 15)
         assert [int(row["m"]) for row in rows] == arrays["m"].ravel().tolist()
-        assert [float(row["frequency_hz"]) for row in rows] == [21.4] * 5 + [21.5] * 5
-        assert np.all(np.diff(arrays["excess"]) > 0.0)
-        periods[start] = arrays["m"][1].tolist()
-    assert periods["up"] == [1, 1, 1, 4, 4] and periods["down"] == [1, 4, 4, 4, 4]
+        assert [float(row["frequency_hz"]) for row in rows] == [21.4] * 15 + [21.5] * 15
+        periods[start], (_, excess) = arrays["m"][1], arrays["excess"]
+    between, outside = (excess > -0.011) & (excess < -0.003), (excess < -0.015) | (excess > 0.001)
+    assert np.all(periods["up"][between] == 1) and np.all(periods["down"][between] > 1)
+    assert np.array_equal(periods["up"][outside], periods["down"][outside]) and periods["up"][-1] > 1
 
 
 def test_a_state_behind_the_stop_or_of_other_modes_begins_from_rest():
     scene = read_scene().replace({"contact.law": "newton", "modes.count": 1})
-    still = {"frequency": 10.0, "amplitude": 1e-3}
-    nearer = [{**still, "stop.gap_m": gap} for gap in (0.012, 0.0119, 1e-6)]
-    assert column_of(nearer, scene, "down")["carried"].tolist() == [False, True, False]
-    more = [{**still, "modes.count": count} for count in (1, 2)]
-    assert not column_of(more, scene, "up")["carried"].any()
+    oscillator = oscillator_at(scene, HERE)
+    at_gap = np.array([oscillator.stop.gap]) / oscillator.model.phi
+    starts = {1.01: False, 0.99: True}
+    for part, starting in starts.items():
+        assert can_start(oscillator, State(displacement=part * at_gap, velocity=0.0 * at_gap)) == starting
+    more = [{**HERE, "modes.count": count} for count in (1, 1, 2)]
+    assert column_of(more, scene, "up")["carried"].tolist() == [False, True, False]
 
 
 def test_a_sweep_goes_on_with_the_same_numbers(run_study):
     before = run_study("sweep", *CROSSED)
-    table, store = before.folder / "sweep.csv", before.folder / "rest-excess-5"
+    table, store = before.folder / "sweep.csv", before.folder / "rest-excess-15"
     kept, column = table.read_bytes(), store / "00003.npz"
     age = (store / "00002.npz").stat().st_mtime_ns
     column.unlink()
@@ -88,7 +91,7 @@ def test_a_sweep_goes_on_with_the_same_numbers(run_study):
 
 def test_a_failed_cell_has_a_reason_and_no_number_and_the_others_go_on(run_study):
     ran = run_study("sweep", "--over", "frequency=21.5:5000:3", *ONE_MODE)
-    assert ran.code == 3 and len(ran.summary["failures"]) == 2 and ran.summary["rows"][0]["m"] == 4
+    assert ran.code == 3 and len(ran.summary["failures"]) == 2 and ran.summary["rows"][0]["m"] > 1
     for row in ran.rows("sweep")[1:]:
         assert "modes.count" in row["reason"]
         assert {row[name] for name in ("m", "impacts", "approach_m_per_s", "energy_lost_j")} == {""}

@@ -3,6 +3,8 @@
 Claim (letter 1996): the control parameters, amplitude and frequency, decide the settled motion.  So do the
 numbers of the spring and of the stop.  In each cell of the sweep the beam settles from rest, or from the
 motion of the cell before it as in a slow change on a rig (--start up, --start down, along the first key).
+The change from cell to cell is sudden: steps next to grazing must be small, lest the step itself makes the
+first touch.
 
     period m         drive periods after which the motion repeats; 0: none up to 64
     impacts          in one period, on all stops; the scene may have several, [[stops]]
