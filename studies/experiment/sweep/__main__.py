@@ -1,4 +1,4 @@
-"""The settled motion over any one or two numbers of a scene, of its drive, or of both.
+"""The settled motion over one or two numbers of a scene or of its drive.
 
 Claim (letter 1996): the control parameters, amplitude and frequency, decide the settled motion.  So do the
 numbers of the spring and of the stop.  In each cell of the sweep the beam settles from rest, or from the
