@@ -226,7 +226,7 @@ def settled_cell(oscillator: ImpactOscillator, state: State | None, most_cycles:
         excess=oscillator.excess,
         amplitude_m=driven.amplitude,
         m=settled.m,
-        impacts=int(np.sum(touches.kind == ImpactKind.IMPACT)),
+        impacts=int(np.sum((touches.kind == ImpactKind.IMPACT) & np.isfinite(touches.approach))),
         peak_force=float(np.fmax.reduce(touches.peak_force)) if len(touches) else 0.0,
         approach=float(np.fmax.reduce(touches.approach, initial=np.nan)),
         energy_lost=float(lost) / periods if abs(lost) > ROUNDING * given else 0.0,
