@@ -109,6 +109,15 @@ def test_touches_of_all_stops_count_and_each_key_is_a_column(run_study, tmp_path
     assert float(row["peak_force_newton"]) == pytest.approx(run.impacts.peak_force.max(), rel=1e-5)
 
 
+def test_a_contact_that_is_closed_at_a_strobe_counts_once():
+    changes = {"modes.count": 2, "contact.law": "linear", "contact.stiffness_n_per_m": 300.0}
+    stops = {"stop.gap_m": 2e-4, "stops": [{"gap_m": 1e-4, "side": -1}]}
+    scene, cell = read_scene().replace({**changes, **stops}), {"frequency": 28.0, "excess": 5.0}
+    found, (_, run) = one_cell(scene, cell), followed(scene, cell, 1)
+    assert np.isnan(run.impacts.approach).tolist() == [True, False, False]
+    assert (found["m"], found["impacts"]) == (1, 2) and run.strobe_impacts.sum() == 2
+
+
 def test_a_key_without_effect_is_named(run_study):
     ran = run_study("sweep", "--over", "contact.stiffness_n_per_m=1e4:1e5:2", "--set", "modes.count=2")
     assert ran.code == 0 and "contact.stiffness_n_per_m changes no number" in ran.err
