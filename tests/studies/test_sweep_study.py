@@ -111,6 +111,7 @@ def test_touches_of_all_stops_count_and_each_key_is_a_column(run_study, tmp_path
 
 def test_a_contact_that_is_closed_at_a_strobe_counts_once():
     changes = {"modes.count": 2, "contact.law": "linear", "contact.stiffness_n_per_m": 300.0}
+    changes["contact.damping_ns_per_m"] = 0.2
     stops = {"stop.gap_m": 2e-4, "stops": [{"gap_m": 1e-4, "side": -1}]}
     scene, cell = read_scene().replace({**changes, **stops}), {"frequency": 28.0, "excess": 5.0}
     found, (_, run) = one_cell(scene, cell), followed(scene, cell, 1)
