@@ -12,6 +12,9 @@ Behind the figures
     `claims`            do loss, secondary bifurcations, universality and period adding hold?
     `last_period`       why was p10 the last period that the letter saw?
     `chart`             which period and how many impacts, over the whole plane of frequency and amplitude?
+    `sweep`             how does the settled motion change with any one or two numbers of a scene?
+
+`period_map` and `period_colours` are what several of them use.
 
 A study is one file or a folder.  In each folder `__main__` has the claim, the options and the verdicts,
 `model` the physics, and `figure` the figures.  A folder with further files names them in its ``__init__``.

@@ -177,6 +177,7 @@ def add_options(parser: Parser, function: Callable[..., object]) -> dict[str, ob
             if get_origin(kind) is tuple:
                 several = Ellipsis in get_args(kind)
                 about["nargs"], kind = "+" if several else len(get_args(kind)), get_args(kind)[0]
+                about["action"] = "extend" if several else "store"  # the option may be repeated
             bounds = next((mark for mark in marks if isinstance(mark, Within)), BOUNDS.get(kind))
             reader = partial(bounds.read, kind) if bounds else kind
             about |= {"type": reader, "metavar": kind.__name__.upper()}

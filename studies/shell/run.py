@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import io
 import time
+import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from contextlib import AbstractContextManager
@@ -25,7 +26,7 @@ from typing import TYPE_CHECKING, Literal, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from beam import Refusal
+from beam import Refusal, SuspiciousValue
 from contact import ContactError
 from studies import letter
 from studies.shell import files as store
@@ -218,7 +219,10 @@ class Run:
     @cached_property
     def letters(self) -> bool:
         """Whether the scene is a spring of the letter."""
-        return of_the_letter(self.scene)
+        with warnings.catch_warnings(
+            action="ignore", category=SuspiciousValue
+        ):  # it is driven as the letter's
+            return of_the_letter(self.scene)
 
     @property
     def wall_time(self) -> float:

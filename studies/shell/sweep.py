@@ -15,7 +15,7 @@ from __future__ import annotations
 import io
 import json
 import shutil
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 from itertools import islice
 from pathlib import Path
@@ -35,6 +35,8 @@ AHEAD = 2
 """Columns handed out for each worker: one computed, one waiting."""
 
 SETTINGS = "settings.json"
+
+MOST_REASONS = 20  # failures with a sentence of their own; all are in the columns
 
 
 def _path(folder: Path, number: int) -> Path:
@@ -119,3 +121,9 @@ def sweep(
                 stream.seek(0)
                 columns[number] = dict(np.load(stream))
                 tick()
+
+
+def note_failures(run: Run, failed: Iterable[tuple[str, str]]) -> None:
+    """Every failed cell counts, as (where, reason); the first are said."""
+    for where, reason in failed:
+        run.failed(where, reason, say=len(run.failures) < MOST_REASONS)

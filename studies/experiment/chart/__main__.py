@@ -21,7 +21,7 @@ Writes:  chart_MODEL.npz (cells), folds_MODEL.csv; cut.csv, cut.npz; basins.npz;
 """
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from functools import partial
 from typing import Annotated, Literal
 
@@ -57,7 +57,7 @@ from studies.shell.scene import (
     single_mode_at,
 )
 from studies.shell.study import Run, study
-from studies.shell.sweep import Column, sweep
+from studies.shell.sweep import Column, note_failures, sweep
 
 POINTS = {"single_mode": (400, 400), "beam": (120, 120)}
 QUICK_POINTS = {"single_mode": (46, 40), "beam": (10, 16)}
@@ -73,8 +73,6 @@ NEEDS = {"born_period": 0.0, "fold_middle": 0.07}
 """What the chart of the beam rests on; Eq. (1) needs nothing."""
 
 CUT_NEEDS = {"fold": 0.05}  # accuracy requirement of the cut
-
-MOST_REASONS = 20  # failures with a sentence of their own; all are in the columns
 
 
 @study(quick={"side": 32})
@@ -104,7 +102,7 @@ def chart(
     settings = {"model": model, "plane": plane, "knee": KNEE, "most_cycles": bound, "scene": scene.values()}
     work, name = partial(column_at, scan=scan, plane=plane), f"{model}-{columns}x{rows}"
     found = sweep(run, name, settings, plane.frequencies().tolist(), work, fresh=fresh)
-    note_failures(run, found)
+    note_failures(run, failures(found))
     return {
         "model": model,
         "modes": oscillator.n_modes,
@@ -116,16 +114,12 @@ def chart(
     }
 
 
-def note_failures(run: Run, columns: list[Column]) -> None:
-    """Every failed cell counts; the first are said."""
+def failures(columns: list[Column]) -> Iterator[tuple[str, str]]:
+    """Where cells failed, and why."""
     for column in columns:
         for way, place in np.argwhere(column["reason"] != ""):
             where = f"{float(column['frequency_hz']):.6g} Hz, excess {float(column['excess'][place]):.6g}"
-            reason = str(column["reason"][way, place])
-            if len(run.failures) < MOST_REASONS:
-                run.failed(f"{where}, {column['direction'][way, 0]}", reason)
-            else:
-                run.failures.append(f"{where}: {reason}")
+            yield f"{where}, {column['direction'][way, 0]}", str(column["reason"][way, place])
 
 
 def drawn(

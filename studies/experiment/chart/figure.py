@@ -1,8 +1,7 @@
 """The chart as a figure: upward scan left, downward scan right; period above, impacts in a period below.
 
-Colours are the seven of the house style, one after the other with the period, lighter for 8 to 14, so that
-neighbouring periods and period doublings always differ; every region that is large enough has its number.
-The upright axis is that of the grid (``model.sheared``).
+Colours and numbers come from ``period_colours``.  The upright axis is that of the grid
+(``model.sheared``).
 
 Figures of the settled motions: strobe points and exponents of a scan, and basins on the strobe plane.
 """
@@ -12,12 +11,9 @@ from collections.abc import Mapping, Sequence
 import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.colors import ListedColormap, to_hex, to_rgb
+from matplotlib.colors import ListedColormap, to_hex
 from matplotlib.figure import Figure
-from matplotlib.patches import Patch
-from matplotlib.patheffects import withStroke
 from numpy.typing import NDArray
-from scipy import ndimage
 
 from contact import Band, plots
 from studies.experiment.chart.model import Fold, Plane, sheared
@@ -30,22 +26,15 @@ from studies.experiment.chart.settled import (
     Settlement,
     Starts,
 )
+from studies.experiment.period_colours import key, key_of_periods, paint, paint_periods, write_numbers
 from studies.physics.descriptions import TITLES
 from studies.shell import plotting
 from studies.shell.digits import written
-
-SEVEN = plotting.PALETTE[1:8]
-PERIODS = ["white", *SEVEN, *(plotting.tint(one, 0.45) for one in SEVEN), "#A0785A"]
-"""Colours of no impact, of the periods 1 to 14, and of a longer one."""
 
 CLASSES = {1: "1", 2: "2", 3: "3", 4: "4\u20135", 6: "6\u20138", 9: "9 or more"}
 """Classes of impacts in a period: lower end and name."""
 VIRIDIS = matplotlib.colormaps["viridis"]
 IMPACTS = ["white", *map(to_hex, VIRIDIS(np.linspace(1.0, 0.1, len(CLASSES))))]
-
-NONE, FAILED = "0.33", "red"
-
-LEAST_WIDTH = 0.04  # part of a panel's sides that a region must have in any direction to be given its number
 
 EDGE, MARKED = 0.0006, 10
 """Distance of the marks for band edges from grazing, where they hold [excess]; largest m of a mark."""
@@ -70,58 +59,25 @@ def draw(
     names = ["", *CLASSES.values()]
     for k, way in enumerate(("upward scan", "downward scan")):
         period, impacts = cells["m"][k], cells["impacts"][k]
-        capped = np.where(impacts == 0, 0, np.minimum(period, len(PERIODS) - 1))
         classes = np.searchsorted(list(CLASSES), impacts, side="right")
-        for axis, colours, places in ((axes[0, k], PERIODS, capped), (axes[1, k], IMPACTS, classes)):
-            table = np.array([to_rgb(one) for one in (*colours, NONE, FAILED)])
-            image = table[np.where(period < 0, -1, np.where(period == 0, -2, places))]
-            axis.pcolormesh(x, y, image.swapaxes(0, 1), shading="nearest", rasterized=True)
+        paint_periods(axes[0, k], x, y, period, impacts)
+        paint(axes[1, k], x, y, period, classes, IMPACTS)
+        write_numbers(axes[1, k], np.where(period > 0, classes, 0), x, y, names)
+        for axis in axes[:, k]:
             _draw_theory(axis, edges, folds)
             axis.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
-        hit = np.where((period > 0) & (impacts > 0), period, 0)
-        _write_numbers(axes[0, k], hit, x, y, [f"p$_{{{m}}}$" for m in range(hit.max() + 1)])
-        _write_numbers(axes[1, k], np.where(hit, classes, 0), x, y, names)
         plotting.panel(axes[0, k], k, f"{name}, {way}: period")
         plotting.panel(axes[1, k], 2 + k, f"{name}, {way}: impacts")
         plotting.label(axes[1, k].xaxis, "drive frequency", "Hz")
     for axis in axes[:, 0]:
         axis.set_yticks(sheared(TICKS), [written(t) for t in TICKS])
         plotting.label(axis.yaxis, plotting.EXCESS)
-    hit = (cells["impacts"] > 0) & (cells["m"] > 0)
-    seen = set(np.minimum(cells["m"][hit], len(PERIODS) - 1).tolist())
-    last = len(PERIODS) - 1
-    texts = {m: f"p$_{{{m}}}$" for m in range(last)} | {last: f"{last} to 64"}
-    failed = bool(np.any(cells["m"] < 0))
-    _key(axes[0, 1], "period m", {texts[m]: PERIODS[m] for m in sorted(seen)}, failed)
+    key_of_periods(axes[0, 1], cells["m"], cells["impacts"])
+    hit, failed = (cells["impacts"] > 0) & (cells["m"] > 0), bool(np.any(cells["m"] < 0))
     seen = set(np.searchsorted(list(CLASSES), cells["impacts"][hit], side="right").tolist())
-    _key(axes[1, 1], "impacts", {names[k]: IMPACTS[k] for k in sorted(seen)}, failed)
+    key(axes[1, 1], "impacts", {names[k]: IMPACTS[k] for k in sorted(seen)}, failed)
     plotting.legend_below(figure, axes.flat, 4)
     return figure
-
-
-def _key(axis: Axes, title: str, colours: Mapping[str, str], failed: bool) -> None:
-    """The colours of a row of panels, right of it; with what both rows have in common."""
-    known = {**colours, "no impact": "white", "no period": NONE, **({"failed": FAILED} if failed else {})}
-    marks = [Patch(facecolor=colour, edgecolor="0.3", linewidth=0.4) for colour in known.values()]
-    place: plotting.Style = {"loc": "center left", "bbox_to_anchor": (1.0, 0.5), "handlelength": 1.0}
-    axis.legend(marks, known.keys(), title=title, ncols=2 if len(marks) > 9 else 1, **place)
-
-
-def _write_numbers(
-    axis: Axes, values: np.ndarray, x: np.ndarray, y: np.ndarray, words: Sequence[str]
-) -> None:
-    """Each large region of one value says it, at its place farthest from its border."""
-    outline = [withStroke(linewidth=1.4, foreground="white")]
-    for value in np.unique(values[values > 0]):
-        marks, _count = ndimage.label(values == value)
-        sizes = np.bincount(marks.ravel())
-        for mark in 1 + np.flatnonzero(sizes[1:] >= LEAST_WIDTH**2 * values.size):
-            sides = [1.0 / count for count in values.shape]
-            depth = ndimage.distance_transform_edt(np.pad(marks == mark, 1), sampling=sides)[1:-1, 1:-1]
-            i, j = np.unravel_index(int(np.argmax(depth)), depth.shape)
-            if depth[i, j] - 0.5 * min(sides) < 0.5 * LEAST_WIDTH:
-                continue
-            axis.text(x[i], y[j], words[value], size=5.5, ha="center", va="center", path_effects=outline)
 
 
 def _draw_theory(axis: Axes, edges: Sequence[Band], folds: Sequence[Fold]) -> None:

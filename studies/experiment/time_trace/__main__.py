@@ -31,6 +31,7 @@ from scipy.constants import g
 from contact import Collision, StroboscopicMap
 from contact.orbits import onset_orbit
 from studies import letter
+from studies.experiment.period_map import SimulatedMap
 from studies.experiment.time_trace import film as filming
 from studies.experiment.time_trace import model as computed
 from studies.experiment.time_trace.model import WORDS, Peak, close_up, lines_of, peaks_of, trace_of
@@ -76,7 +77,7 @@ def time_trace(
     model = model_of(scene)
     require_drive_below(scene, model, drive_hz)
     oscillator = beam_at(scene, drive_hz, model).with_excess(excess)
-    kind, most = computed.SimulatedMap if scene.stops else StroboscopicMap, max(scene.scan.settle_cycles, 1)
+    kind, most = SimulatedMap if scene.stops else StroboscopicMap, max(scene.scan.settle_cycles, 1)
     settled = onset_orbit(kind(oscillator=oscillator), excess, most_cycles=most)
     length = ORBIT_PERIODS * settled.m or APERIODIC
     trace = trace_of(oscillator, settled.end, length)
