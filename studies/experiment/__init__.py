@@ -13,6 +13,13 @@ Behind the figures
     `last_period`       why was p10 the last period that the letter saw?
     `chart`             which period and how many impacts, over the whole plane of frequency and amplitude?
 
+For students
+    `lecture`           what to set on the bench, and what is seen?
+
+What several of them use
+    `trace`             a motion in time, its collisions and its spectrum
+    `film`              an orbit as a film, slow at its impacts
+
 A study is one file or a folder.  In each folder `__main__` has the claim, the options and the verdicts,
 `model` the physics, and `figure` the figures.  A folder with further files names them in its ``__init__``.
 """

@@ -9,7 +9,7 @@ from PIL import Image
 from contact import Collision, StroboscopicMap, first_collision
 from contact.collision import before_collision
 from contact.orbits import onset_orbit
-from studies.experiment.time_trace.model import WORDS, SimulatedMap, close_up
+from studies.experiment.trace import WORDS, SimulatedMap, close_up
 from studies.shell.painter import GRAPH_HEIGHT, HEIGHT, WIDTH
 from studies.shell.scene import beam_at, single_mode_of
 
