@@ -16,6 +16,13 @@ Behind the figures
 
 `period_map` and `period_colours` are what several of them use.
 
+For students
+    `lecture`           what to set on the bench, and what is seen?
+
+What several of them use
+    `trace`             a motion in time, its collisions and its spectrum
+    `film`              an orbit as a film, slow at its impacts
+
 A study is one file or a folder.  In each folder `__main__` has the claim, the options and the verdicts,
 `model` the physics, and `figure` the figures.  A folder with further files names them in its ``__init__``.
 """

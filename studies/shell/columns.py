@@ -25,7 +25,7 @@ from typing import Any
 import numpy as np
 
 UNITS = {"Hz": "hz", "s": "s", "m": "m", "kg": "kg", "m/s": "m_per_s", "m/s^2": "m_per_s2", "1/s": "per_s"}
-UNITS |= {"J": "j", "N": "newton", "N s": "newton_s", "µs": "us", "ms": "ms"}
+UNITS |= {"mm": "mm", "mm/s": "mm_per_s", "J": "j", "N": "newton", "N s": "newton_s", "µs": "us", "ms": "ms"}
 UNITS |= {"kg^(-1/2)": "per_sqrt_kg", "kg^(1/2)": "sqrt_kg", "kg^(-1/2) m^(-1)": "per_sqrt_kg_m"}
 """Unit -> the end of a column's name."""
 

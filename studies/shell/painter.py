@@ -185,7 +185,8 @@ def lines_above(figure: Figure, moment: Moment) -> list[Text]:
     for row, line in enumerate(moment.lines):
         marked = row == len(moment.lines) - 1 and any(moment.touched)
         colour, up = TOUCHED if marked else "#5A5A5A" if row else "black", 1.0 - (8 + 24 * row) / height
-        found.append(figure.text(12 / width, up, line, color=colour, fontsize=11.5, va="top", animated=True))
+        look: Any = {"color": colour, "weight": "bold" if marked else "normal", "fontsize": 11.5}
+        found.append(figure.text(12 / width, up, line, **look, va="top", animated=True))
     return found
 
 

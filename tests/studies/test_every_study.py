@@ -56,7 +56,7 @@ FEWER = {
 
 #: Studies of driven motions, and those that change the dimensions of a spring.
 DRIVEN = "adequacy breakdown chart claims effective_impact hysteresis last_period noise soft_wall".split()
-DRIVEN += ["sweep", "time_trace", "transitions", "work_precision"]
+DRIVEN += ["lecture", "sweep", "time_trace", "transitions", "work_precision"]
 ON_A_SPRING = ("breakdown", "calibrate", "effective_impact", "last_period", "shape")
 
 #: A fit takes hundreds of meshes; what the others compute is tested beside their whole forms.

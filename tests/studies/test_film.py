@@ -7,7 +7,7 @@ from PIL import Image
 from beam import BRASS, DAMPING_TAPE, STEEL
 from contact import StroboscopicMap
 from contact.orbits import onset_orbit
-from studies.experiment.time_trace.film import drawn_shapes, film_orbit
+from studies.experiment.film import drawn_shapes, film_orbit
 from studies.shell import painter
 from studies.shell.film import can_encode, write_gif, written_as_mp4
 from studies.shell.painter import Moment, Scenery, stage_of

@@ -11,7 +11,7 @@ import pytest
 import contact
 from contact import State, StroboscopicMap, first_collision, simulate
 from contact.orbits import settle
-from studies.experiment.time_trace.model import contact_force
+from studies.experiment.trace import contact_force
 from studies.letter import PERIODS
 from studies.physics.one_mode import doubts, with_restitution
 from studies.shell.scene import (

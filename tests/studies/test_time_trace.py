@@ -10,7 +10,7 @@ from contact import Collision, StroboscopicMap, first_collision
 from contact.collision import before_collision
 from contact.orbits import onset_orbit
 from studies.experiment.period_map import SimulatedMap
-from studies.experiment.time_trace.model import WORDS, close_up
+from studies.experiment.trace import WORDS, close_up
 from studies.shell.painter import GRAPH_HEIGHT, HEIGHT, WIDTH
 from studies.shell.scene import beam_at, single_mode_of
 

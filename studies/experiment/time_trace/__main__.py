@@ -24,17 +24,27 @@ Writes:  time_trace.npz, collisions.csv or impacts.csv, spectrum.npz, peaks.csv,
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Annotated, Any
+from typing import Annotated
 
 from scipy.constants import g
 
 from contact import Collision, StroboscopicMap
 from contact.orbits import onset_orbit
 from studies import letter
+from studies.experiment import film as filming
+from studies.experiment import trace as computed
 from studies.experiment.period_map import SimulatedMap
-from studies.experiment.time_trace import film as filming
-from studies.experiment.time_trace import model as computed
-from studies.experiment.time_trace.model import WORDS, Peak, close_up, lines_of, peaks_of, trace_of
+from studies.experiment.trace import (
+    NEEDS,
+    WORDS,
+    Peak,
+    close_up,
+    conditions,
+    lines_of,
+    peaks_of,
+    repeats,
+    trace_of,
+)
 from studies.physics.descriptions import word
 from studies.shell.digits import written
 from studies.shell.film import MOST_FRAMES
@@ -43,19 +53,12 @@ from studies.shell.run import Verdict
 from studies.shell.scene import Scene, beam_at, model_of, own_frequency, require_drive_below
 from studies.shell.study import Run, study
 
-NEEDS = {"tip_trace": 2e-3, "kick": 0.005, "restitution": 0.01}
 ORBIT_PERIODS = 2  # periods of the orbit in the figure
 
 APERIODIC = 8  # drive periods shown of a motion that has no period
 
 SHOWN = "first_touch approach restitution delay kick impacts contact_time peak_force ringing".split()
 """Columns of a collision that are shown to a person."""
-
-
-def conditions(scene: Scene, options: Mapping[str, Any]) -> tuple[list[float], float]:
-    """Drive frequency [Hz] and excess of the command."""
-    given = options["frequency"]
-    return [own_frequency(scene, letter.TIME_TRACE_HZ) if given is None else given], options["excess"]
 
 
 @study(needs=NEEDS, quick={"frames": 60}, at=conditions, many_stops=True)
@@ -141,14 +144,6 @@ def time_trace(
         "peak_unit": unit,
         **filmed,
     }
-
-
-def repeats(m: int) -> str:
-    """When the motion repeats."""
-    if not m:
-        return "the motion has no period up to 64 drive periods"
-    whole = "each drive period" if m == 1 else f"{m} drive periods"
-    return f"the settled motion repeats after {whole}"
 
 
 def findings(run: Run, m: int, impacts: int, found: Sequence[Collision], higher: Sequence[int]) -> None:

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from contact import Stop, plots
-from studies.experiment.time_trace.model import CloseUp, Trace
+from studies.experiment.trace import CloseUp, Trace
 from studies.shell import plotting
 from studies.shell.scene import READOUT
 

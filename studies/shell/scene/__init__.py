@@ -262,11 +262,11 @@ def of_the_letter(scene: Scene) -> bool:
     """Whether T and mu, T of the spring's first mode, and roughly the drive amplitude are the letter's."""
     printed, first = letter.BREAKDOWN, free_period(scene)
     rate = scene.single_mode.decay_rate_per_s - printed["decay_rate_per_s"]
-    driven = _on_stop(scene, single_mode_of(scene), contact_law_of(scene), letter.TIME_TRACE_HZ)
-    size = driven.grazing_amplitude() / letter.DRIVE_AMPLITUDE_M
     same = corresponding(scene, 1.0) == 1.0 and abs(first / letter.FREE_PERIOD_S - 1.0) <= SAME_SPRING
-    same &= not scene.stops
-    return same and abs(rate) <= printed["decay_rate_error_per_s"] and 1.0 / TYPICAL <= size <= TYPICAL
+    if not same or scene.stops or abs(rate) > printed["decay_rate_error_per_s"]:
+        return False
+    driven = _on_stop(scene, single_mode_of(scene), contact_law_of(scene), letter.TIME_TRACE_HZ)
+    return 1.0 / TYPICAL <= driven.grazing_amplitude() / letter.DRIVE_AMPLITUDE_M <= TYPICAL
 
 
 def periods_of(scene: Scene) -> Mapping[float, int]:

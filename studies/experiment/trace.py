@@ -15,8 +15,9 @@ and the discrete Fourier transform gives a_j without leakage and without a windo
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,7 +38,8 @@ from contact import (
     collisions,
     simulate,
 )
-from studies.shell.scene import READOUT
+from studies import letter
+from studies.shell.scene import READOUT, Scene, own_frequency
 
 PER_PERIOD = 16_384
 """Samples in a drive period: at 21.5 Hz up to 176 kHz without folding, beyond what the spectrum shows."""
@@ -70,6 +72,24 @@ WORDS = {
 """What the fields of a collision hold, as the columns of a table."""
 
 Array = NDArray[np.float64]
+
+
+NEEDS = {"tip_trace": 2e-3, "kick": 0.005, "restitution": 0.01}
+"""Answers of a study of one orbit, with their largest errors."""
+
+
+def conditions(scene: Scene, options: Mapping[str, Any]) -> tuple[list[float], float]:
+    """Drive frequency [Hz] and excess of the command."""
+    given = options["frequency"]
+    return [own_frequency(scene, letter.TIME_TRACE_HZ) if given is None else given], options["excess"]
+
+
+def repeats(m: int) -> str:
+    """When the motion repeats."""
+    if not m:
+        return "the motion has no period up to 64 drive periods"
+    whole = "each drive period" if m == 1 else f"{m} drive periods"
+    return f"the settled motion repeats after {whole}"
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -32,10 +32,10 @@ from numpy.typing import NDArray
 from beam import Modes, SpringMesh, write_frames
 from contact import ImpactKind, ImpactOscillator, State, simulate
 from contact.orbits import Settled
-from studies.experiment.time_trace.model import Trace, touching
+from studies.experiment.trace import Trace, touching
 from studies.shell.digits import minus
 from studies.shell.film import RATE, write_film
-from studies.shell.painter import DRIVE, Moment, Scenery, stage_of
+from studies.shell.painter import DRIVE, TOUCHED, Moment, Scenery, stage_of
 from studies.shell.scene import Scene, modes_of
 from studies.shell.study import Run
 
@@ -102,12 +102,15 @@ def lines_of(orbit: FilmedOrbit) -> Iterator[tuple[str, str]]:
 
 
 def graph_of(trace: Trace, gaps: Sequence[float], duration: float) -> Callable[[Axes], None]:
-    """The tip against time, with the plates at `gaps` [m], as it stands below a frame."""
+    """The tip against time, its impacts ringed, with the plates at `gaps` [m], as it stands below a frame."""
 
     def graph(axes: Axes) -> None:
-        from studies.shell.plotting import BLUE, GUIDE, NOTE, label  # matplotlib is slow to import
+        from studies.shell.plotting import BLUE, GUIDE, NOTE, Style, label  # matplotlib is slow to import
 
         axes.plot(1e3 * trace.time, 1e3 * trace.tip, color=BLUE)
+        hits = trace.impact_times
+        ring: Style = {"color": TOUCHED, "markersize": 11, "markerfacecolor": "none"}
+        axes.plot(1e3 * hits, 1e3 * np.interp(hits, trace.time, trace.tip), "o", **ring, clip_on=False)
         across = axes.get_yaxis_transform()
         for gap in gaps:
             axes.axhline(1e3 * gap, **GUIDE)

@@ -1,0 +1,276 @@
+"""For students: what to set on the bench, and what is seen.
+
+Computed with all modes, at one drive frequency:
+
+    settings    amplitudes of the base at which impacts begin, and end when it is lowered again
+    table       impacts in how many shakes, their speed and force, over a scan up and down
+    slides      what grazing is, and the orbit diagram, in 16:9 whatever the --style
+
+An amplitude is the largest displacement of the base.  Settings are rounded up where impacts begin, and down
+where they end.  With --film one period of the orbit at --excess is filmed, slow at its impacts.
+
+Run:     python -m studies lecture --scene steel_ruler [--frequency HZ] [--excess E] [--film]
+Writes:  lecture.txt, seen.csv, slide_1.png, slide_2.png; with --film motion.gif, motion.mp4, motion.pvd
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from functools import partial
+from itertools import groupby
+from typing import TYPE_CHECKING, Annotated
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.constants import g
+
+from contact import ContactError, State, StroboscopicMap, plots, simulate
+from contact.orbits import onset_orbit, orbit_end, settle
+from studies import letter
+from studies.experiment import film as filming
+from studies.experiment.trace import NEEDS, Trace, conditions, repeats, trace_of
+from studies.physics.descriptions import BELOW, both_ways
+from studies.shell.digits import written
+from studies.shell.film import MOST_FRAMES
+from studies.shell.options import HERTZ, Within, style_of
+from studies.shell.scene import Scene, beam_at, harmonic, model_of, require_drive_below
+from studies.shell.scene.spring import spring_in_words
+from studies.shell.study import Run, study
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+STROBES, SHAKES = 64, 8  # shakes in the orbit diagram, and against time
+MOST_STEPS = 50  # on the way down: orbits of other periods, and steps of irregular impacts between them
+COARSE, SHARE = 2, 0.02  # decimals of a shaker in mm; largest step of a setting over the amplitude
+
+
+@dataclass(frozen=True)
+class Seen:
+    """What is seen over a range of amplitudes of the base, in the order of a scan."""
+
+    direction: Annotated[str, "direction of the scan"]
+    from_mm: Annotated[float, "first amplitude [mm]"]
+    to_mm: Annotated[float, "last amplitude [mm]"]
+    seen: Annotated[str, "what is seen"]
+    m: int
+    impacts: Annotated[int | None, "impacts in a period; none for a motion without a period"]
+    approach: Annotated[float, "largest approach speed [mm/s]"]
+    peak_force: Annotated[float, "largest contact force [N]; none under Newton's law"]
+
+
+Scanned = list[tuple[Seen, NDArray[np.float64]]]
+"""Each amplitude of a scan, with the ball once in each shake [mm]."""
+
+
+def in_words(m: int, impacts: int) -> str:
+    """What a person sees of a settled motion."""
+    if not impacts:
+        return "the ball does not reach the plate"
+    count = "one impact" if impacts == 1 else f"{impacts} impacts"
+    return f"{count} in {'each shake' if m == 1 else f'{m} shakes'}" if m else "irregular impacts"
+
+
+def scan(
+    strobed: StroboscopicMap, run: Run, cycles: int, way: str, excesses: NDArray[np.float64], state: State
+) -> tuple[Scanned, State]:
+    """The settled motions at these amplitudes, each from the end of the one before; and the last state."""
+    found, grazing = Scanned(), 1e3 * strobed.oscillator.grazing_amplitude()
+    for excess in excesses.tolist():
+        here, at = strobed.at(excess), grazing * (1.0 + excess)
+        try:
+            settled = settle(here, state, most_cycles=cycles)
+            m, impacts, state = settled.m, settled.impacts, settled.end
+            touches = simulate(here.oscillator, state, periods=m or STROBES).impacts
+            points = 1e3 * here.tip(here.orbit(state, STROBES).points)
+        except ContactError as error:
+            run.failed(f"{way}ward scan, {at:.6g} mm", error)
+            continue
+        most = (
+            float(np.fmax.reduce(v, initial=np.nan)) for v in (1e3 * touches.approach, touches.peak_force)
+        )
+        found.append((Seen(way, at, at, in_words(m, impacts), m, impacts if m else None, *most), points))
+    return found, state
+
+
+def merged(scanned: Scanned) -> Iterator[Seen]:
+    """The rows of a scan: neighbouring amplitudes with the same motion are one."""
+    for _, group in groupby((row for row, _ in scanned), key=lambda row: row.seen):
+        rows = list(group)
+        speed, force = (np.fmax.reduce([getattr(one, n) for one in rows]) for n in ("approach", "peak_force"))
+        yield replace(rows[0], to_mm=rows[-1].to_mm, approach=float(speed), peak_force=float(force))
+
+
+def lowered(
+    strobed: StroboscopicMap, state: State, begins: float, places: int, cycles: int
+) -> tuple[float, float]:
+    """Lower the amplitude from the setting `begins` [mm], by orbits and steps, until impacts end.
+
+    Returns the end of the last orbit, and the first setting without impacts after `cycles` shakes [mm].  They
+    are NaN without an orbit, and if impacts do not end.
+    """
+    grazing, last, now = 1e3 * strobed.oscillator.grazing_amplitude(), math.nan, begins
+    for _ in range(MOST_STEPS):
+        end = orbit_end(strobed, state, now / grazing - 1.0, most_cycles=cycles)
+        if end is not None:
+            now = last = grazing * (1.0 + end.excess)
+            state = end.state
+        now = (math.ceil(now * 10.0**places - 1e-6) - 1) / 10.0**places
+        after = settle(strobed.at(now / grazing - 1.0), state, most_cycles=cycles)
+        if not after.impacts:
+            return last, now
+        state = after.end
+    return last, math.nan
+
+
+@study(needs=NEEDS, quick={"frames": 60}, at=conditions)
+def lecture(
+    scene: Scene,
+    run: Run,
+    *,
+    excess: Annotated[
+        float, "amplitude over grazing, less one, of the orbit that is filmed", Within(-1, 1e6, open=True)
+    ] = letter.TIME_TRACE_EXCESS,
+    frequency: Annotated[float | None, "drive frequency (Hz); by default one of the scene", HERTZ] = None,
+    film: Annotated[bool, "film one period of the orbit"] = False,
+    frames: Annotated[int, "frames of the film, with --film", Within(1, MOST_FRAMES)] = 240,
+) -> Mapping[str, object]:
+    """Compute, store and draw."""
+    (hz,), _ = conditions(harmonic(scene), {"frequency": frequency, "excess": excess})
+    model = model_of(scene)
+    require_drive_below(scene, model, hz)
+    strobed = StroboscopicMap(oscillator=beam_at(scene, hz, model))
+    cycles, grazing = max(scene.scan.settle_cycles, 1), 1e3 * strobed.oscillator.grazing_amplitude()
+    places = max(COARSE, -math.floor(math.log10(SHARE * grazing)))
+    begins = math.ceil(grazing * 10.0**places) / 10.0**places
+    at_excess = {"near": scene.scan.born_excess, "begins": begins / grazing - 1.0, "filmed": excess}
+    orbits = {name: onset_orbit(strobed, e, most_cycles=cycles) for name, e in at_excess.items()}
+    last, ends = lowered(strobed, orbits["begins"].end, begins, places, cycles)
+    # rounded, so that no amplitude of the scan lies on the end of an orbit
+    reach = float(f"{max(scene.scan.narrowest, np.nan_to_num(abs(1.0 - np.fmax(last, ends) / grazing))):.2g}")
+    points = min(scene.scan.points, 21) if run.quick else scene.scan.points
+    values = np.linspace(-min(scene.scan.reach_below * reach, 0.5), reach, points)
+    scans = both_ways(strobed, values, partial(scan, strobed, run, cycles))
+    seen = {name: in_words(one.m, one.impacts) + f" (p{one.m})" * (one.m > 1) for name, one in orbits.items()}
+    mm = {"grazing": grazing, "begins": begins, "last": last, "ends": ends}
+    mm["gap"] = 1e3 * strobed.oscillator.stop.gap
+    mm["filmed"] = grazing * (1.0 + excess)
+    said = sentences(scene, hz, cycles, places, mm, seen)
+    for sentence in said:
+        run.say(sentence)
+    run.text("lecture.txt", "\n".join(said) + "\n", "What to set on the bench, and what is seen.")
+    rows = [row for scanned in scans.values() for row in merged(scanned)]
+    run.table("seen", rows, "What is seen at which amplitude of the base.", of=Seen)
+    below, above = strobed.at(BELOW), strobed.at(at_excess["begins"])
+    traces = {
+        f"{(1.0 + BELOW) * grazing:.{places + 1}f} mm: no impact": trace_of(
+            below.oscillator, below.steady(), SHAKES
+        ),
+        f"{begins:.{places}f} mm: ▼ {seen['begins']}": trace_of(
+            above.oscillator, orbits["begins"].end, SHAKES
+        ),
+    }
+    draw(run, mm, places, traces, scans)
+    if film:
+        filmed, oscillator = orbits["filmed"], strobed.at(excess).oscillator
+        trace = trace_of(oscillator, filmed.end, filmed.m or filming.APERIODIC)
+        words = f"at {hz:g} Hz, amplitude {mm['filmed']:.{places}f} mm: {seen['filmed']}"
+        filming.film(scene, run, oscillator, filmed, trace, words, frames=frames)
+    run.finding(f"Where the ball begins to hit the plate, {repeats(orbits['begins'].m)}.")
+    if last < grazing:
+        run.finding(f"Lowered again, regular impacts go on to {written(grazing - last, 2)} mm below grazing.")
+    return {"rows": rows, "frequency_hz": hz, "amplitudes_mm": mm, "seen": seen, "sentences": said}
+
+
+def sentences(
+    scene: Scene, hz: float, shakes: int, places: int, mm: Mapping[str, float], seen: Mapping[str, str]
+) -> list[str]:
+    """What to set on the bench, and what is seen."""
+    free = f" with {1e3 * scene.spring.leg_length_m:.4g} mm free" if scene.spring.kind == "cantilever" else ""
+    begins, apart, step = mm["begins"], mm["grazing"] - mm["last"], 10.0**-places
+    size = 1e-3 * begins * (2.0 * math.pi * hz) ** 2 / g
+    said = [
+        f"Clamp the {spring_in_words(scene)}{free}.",
+        f"Hold the plate {1e3 * scene.stop.gap_m:.2f} mm from the resting ball.",
+        f"Shake the clamp at {hz:g} Hz, and wait up to {shakes / hz:.0f} s at each amplitude.",
+        f"Raise the amplitude to {begins:.{places}f} mm: the ball begins to hit the plate, "
+        f"with {seen['begins']}.",
+        f"That is {2.0 * begins:.{places}f} mm from peak to peak, with a peak acceleration of {size:.3g} g.",
+    ]
+    ends = f"Lower it to {mm['ends']:.{places}f} mm: the impacts end."
+    said += ["Lower it again: the impacts go on." if math.isnan(mm["ends"]) else ends]
+    said += [f"More exactly, impacts begin at {mm['grazing']:.{places + 2}f} mm."]
+    if not math.isnan(apart):
+        said += [f"Lowered, regular impacts end at {mm['last']:.{places + 2}f} mm."]
+    if apart < step:
+        small = f"This hysteresis of {apart:.2g} mm is less than {step:g} mm: only finer steps show it."
+        said += [small if apart > 0.0 else "There is no hysteresis."]
+    if mm["ends"] < mm["last"] - step:
+        said += ["Below that, irregular impacts can go on for the whole wait."]
+    if seen["near"] != seen["begins"]:
+        said += [f"Closer to grazing than these settings, the audience sees: {seen['near']}."]
+    return [*said, f"At {mm['filmed']:.{places}f} mm the audience sees: {seen['filmed']}."]
+
+
+def draw(
+    run: Run, mm: Mapping[str, float], places: int, traces: Mapping[str, Trace], scans: Mapping[str, Scanned]
+) -> None:
+    """The two slides: the motions below and above grazing by their titles, and the scans."""
+    from studies.shell import plotting  # matplotlib is slow to import
+
+    with style_of("slide"), plotting.house_style():
+        figure, axes = plotting.new_figure(2, 2, width_ratios=[1.0, 1.6], sharex="col", sharey="col")
+        axes[1, 0].remove()
+        axes[0, 0].set_subplotspec(axes[0, 0].get_gridspec()[:, 0])
+        draw_bench(axes[0, 0], f"gap {mm['gap']:.2f} mm")
+        for axis, (title, trace), number in zip(axes[:, 1], traces.items(), (1, 2), strict=True):
+            axis.plot(1e3 * trace.time, 1e3 * trace.tip, color=plotting.PALETTE[number])
+            axis.axhline(mm["gap"], **plotting.GUIDE)
+            axis.text(1.01, mm["gap"], "plate", transform=axis.get_yaxis_transform(), va="center")
+            hits = 1e3 * trace.impact_times
+            axis.plot(hits, np.full(hits.shape, 1.2 * mm["gap"]), "kv", in_layout=False)
+            axis.margins(x=0.0)
+            axis.set_title(title, loc="left")
+            plotting.label(axis.yaxis, "ball", "mm")
+        plotting.label(axis.xaxis, "time", "ms")
+        figure.suptitle("Grazing: the ball just reaches the plate, with no speed", fontweight="bold")
+        run.figure("slide_1", figure, "The bench, and the ball just below and just above grazing.")
+        figure, axis = plotting.new_figure()
+        for way, name, look in (("up", "raised", plotting.UP), ("down", "lowered", plotting.DOWN)):
+            amplitude = np.array([row.from_mm for row, _ in scans[way]])
+            points = np.reshape([strobes for _, strobes in scans[way]], (-1, STROBES))
+            names, settled = {"label": f"amplitude {name}"}, [row.m > 0 for row, _ in scans[way]]
+            plots.strobes(axis, amplitude, points, settled, pale="pale: irregular", **names, **look)
+        sides = (("left", 3), ("right", -3))[:: -1 if mm["last"] > mm["grazing"] else 1]
+        for name, key, (side, apart) in (
+            ("impacts begin", "grazing", sides[0]),
+            ("regular impacts end", "last", sides[1]),
+        ):
+            if math.isfinite(mm[key]):
+                axis.axvline(mm[key], **{**plotting.GUIDE, "color": "black"})
+                where = {"xycoords": axis.get_xaxis_transform(), "textcoords": "offset points", "ha": side}
+                words = f"{name}\n{mm[key]:.{places + 2}f} mm"
+                axis.annotate(words, (mm[key], 1.0), (apart, 2), **where)
+        plotting.label(axis.xaxis, "amplitude of the clamp", "mm")
+        plotting.label(axis.yaxis, "ball, once in each shake", "mm")
+        words = "end at" if mm["last"] >= mm["grazing"] else "go on below"
+        figure.suptitle(f"Once begun, the impacts {words} grazing", fontweight="bold")
+        plotting.legend_below(figure, [axis], 3)
+        run.figure("slide_2", figure, "The ball once in each shake, the amplitude raised and lowered.")
+
+
+def draw_bench(axes: Axes, gap: str) -> None:
+    """Clamp, spring, ball and plate from the side, not to scale."""
+    axes.set(xlim=(-1.5, 10.5), ylim=(-6.5, 7.5))
+    axes.axis("off")
+    axes.fill([-1, 0.5, 0.5, -1], [-1.6, -1.6, 1.6, 1.6], color="0.3")
+    axes.plot([0.5, 9], [0.0, 0.0], color="0.45", linewidth=3)
+    axes.plot([8.5], [0.75], "o", markersize=11)
+    axes.fill([6.5, 10.5, 10.5, 6.5], [5, 5, 6, 6], color="0.6")
+    for x, low, high in ((8.5, 1.6, 5.0), (-0.25, -5.5, -2.0)):
+        axes.annotate("", (x, high), (x, low), arrowprops={"arrowstyle": "<->", "shrinkA": 0, "shrinkB": 0})
+    names = ((8.1, 3.2, gap), (9.8, 6.6, "plate"), (9.4, -1.6, "ball"), (5.5, -1.6, "spring"))
+    for x, y, words in (*names, (7.5, -4.0, "clamp, shaken")):
+        axes.text(x, y, words, ha="right", va="center")
