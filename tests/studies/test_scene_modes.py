@@ -1,4 +1,4 @@
-"""Measured modes of a scene: each description gives one model, and a sentence names what is wrong in a file."""
+"""Measured modes of a scene: each description gives one model, and a wrong file is refused with the place."""
 
 import math
 from pathlib import Path
