@@ -232,7 +232,7 @@ BEAM = (
        value=dict(poles=each(says([-1 - 150j, 9j], "poles holds -1-150j rad/s in mode 1"),
                              [150.0, 900.0], []),
                   force_residues=each(says([0, -0.04j], "force_residues is 0 in mode 1"), [-0.3j], [NAN, -1j],
-                                      says([-0.3j, 0.04j], "phase in mode 2 that is -179 degrees off")),
+                                      says([-0.3j, 0.04j], "phase in mode 2 that is 180 degrees off")),
                   base_residues=says([0.003, 0], "phase in mode 1 that is -90 degrees off"),
                   response="force")),
     of(lambda count: beam.ModalModel(**MODAL).truncated(count), dict(count=2), name="ModalModel, truncated",
