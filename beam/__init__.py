@@ -16,9 +16,10 @@ can touch a stop:
 The steps are types: `Material`, `StripSection`, `Centreline`, `LeafSpring`, `Discretization` (finite elements
 in the arc length), `Modes` (mass-normalised), `ModalModel`. Each of them may be made by hand, for instance a
 `ModalModel` of measured numbers. `single_mode` is the oscillator with one degree of freedom.
-`ModalModel.from_matrices` takes mass and stiffness matrices of any other program. `exact_modes` solves the
-frequency equation of the straight beam, as a check of the elements. At finite rotations,
-`backbone_coefficient` gives the frequency over the amplitude, and `periodic_motion` the motion itself.
+`ModalModel.from_residues` takes poles and residues of a modal test, `ModalModel.from_matrices` mass and
+stiffness matrices of any other program. `exact_modes` solves the frequency equation of the straight beam, as
+a check of the elements. At finite rotations, `backbone_coefficient` gives the frequency over the amplitude,
+and `periodic_motion` the motion itself.
 
 All units are SI. Parameters are keyword-only and frozen, and `dataclasses.replace` varies them. Wrong values
 raise `ValueError` or `TypeError` with one sentence (see `beam.parameters`). Values that can hardly be meant
@@ -54,8 +55,9 @@ if TYPE_CHECKING:
         periodic_motion,
     )
     from .material import ALUMINA, BRASS, DAMPING_TAPE, STEEL, Material
-    from .modal_model import ModalModel, single_mode
+    from .modal_model import ModalModel
     from .modes import Modes, ShapesAlong, natural_modes
+    from .one_mode import single_mode
     from .parameters import InvalidType, InvalidValue, Refusal, SuspiciousValue, suspect
     from .point import Point
     from .reduction import reduce

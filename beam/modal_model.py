@@ -14,13 +14,9 @@ of the tip relative to the base [m], and
     Gamma_k  `participation` of shape k in a motion of the base         [kg^(1/2)]
 
 An impact depends on these four arrays only, each of shape (n_modes,). Damping is modal: it does not couple
-the modes. One mode with unit mass, phi = Gamma = 1 and the damped period T = 2 pi / sqrt(omega^2 - (mu/2)^2)
-is Eq. (1) of the letter, xi'' + mu xi' + omega^2 xi = -z''. The modes are complete, so that over all of them
+the modes. With C the `static_compliance` [m/N] and M the lumped mass at the tip [kg], all modes together have
 
-    sum phi_k^2/omega_k^2 = C,   sum phi_k^2 = 1/M,   sum Gamma_k phi_k = 1
-
-with C the `static_compliance` [m/N] and M the lumped mass at the tip [kg]. Derivation:
-``docs/theory/beam.md``.
+    sum phi_k^2/omega_k^2 = C,   sum phi_k^2 = 1/M,   sum Gamma_k phi_k = 1        (``docs/theory/beam.md``).
 """
 
 from __future__ import annotations
@@ -29,11 +25,12 @@ from collections.abc import Mapping
 from dataclasses import field, replace
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from .exciter import modes_on_exciter
+from .modal_test import modes_of_residues
 from .parameters import final, require, require_kind, require_whole, require_within, shown, suspect
-from .point import Point, check_statics, row_of
+from .point import Point, check_statics, require_own_statics, row_of
 from .record import record
 from .residual_mode import residual_mode
 
@@ -58,9 +55,10 @@ class ModalModel:
     decay_rate : array_like, shape (n_modes,)
         Coefficient of q' in each modal equation [1/s], not negative; may exceed 2 omega (overdamped).
     phi : array_like, shape (n_modes,)
-        Mass-normalised tip values in the drive direction [kg^(-1/2)].
+        Mass-normalised tip values in the drive direction [kg^(-1/2)]. At the tip mode k is a mass 1/phi_k^2.
     participation : array_like, shape (n_modes,)
-        Participation in a base motion along the drive direction [kg^(1/2)].
+        Participation in a base motion along the drive direction [kg^(1/2)]: the force on mode k per unit
+        deceleration of the base. A modal test gives it and `phi`: `from_residues`, ``docs/guide/own.md``.
     static_compliance, tip_mass : float, optional
         Compliance [m/N] and mass [kg] of the tip, see `Point`. With another `phi` give both anew.
     points : mapping of str to Point, optional
@@ -125,11 +123,7 @@ class ModalModel:
         check_statics(self, static_compliance="m/N", tip_mass="kg")
         tip = Point(row=self.phi, static_compliance=self.static_compliance, mass=self.tip_mass)
         vars(self).update(points=points | {"tip": tip})
-        if old is not None and any(abs(a) != abs(b) for a, b in zip(old.row, tip.row, strict=False)):
-            words = "which belongs to another phi; it must be given for this phi, or None"
-            c, m = tip.static_compliance, tip.mass
-            require(c is None or c != old.static_compliance, "static_compliance", f"is {c} m/N, {words}")
-            require(m is None or m != old.mass, "tip_mass", f"is {m} kg, {words}")
+        require_own_statics(tip, old)
         lowest = int(np.argmin(np.where(omega > 0.0, omega, np.inf)))
         ratio = 0.5 * self.decay_rate[lowest] / omega[lowest] if omega[lowest] > 0.0 else 0.0
         if ratio > GREATEST_RATIO:
@@ -172,6 +166,62 @@ class ModalModel:
         c, m = found["tip"].static_compliance, found["tip"].mass
         return cls(**rows, static_compliance=c, tip_mass=m, points=found, dimensionless=False)
 
+    @classmethod
+    def from_residues(
+        cls,
+        *,
+        poles: ArrayLike,
+        force_residues: ArrayLike,
+        base_residues: ArrayLike,
+        response: str = "displacement",
+        static_compliance: float | None = None,
+        tip_mass: float | None = None,
+    ) -> ModalModel:
+        """Return the modes of a modal test, from poles and residues of two frequency responses of the tip.
+
+        Parameters
+        ----------
+        poles : array_like, shape (n_modes,)
+            Poles lambda_k = -c_k/2 + i omega_dk = omega_k (-zeta_k + i sqrt(1 - zeta_k^2)) [rad/s].
+        force_residues, base_residues : array_like, shape (n_modes,)
+            Complex residues over a force on the tip [m/(N s), for a displacement], and over the acceleration
+            of the base [s]. The motion of the tip may be absolute or relative to the base.
+        response : {"displacement", "velocity", "acceleration"}
+            What both tests measured.
+        static_compliance, tip_mass : float, optional
+            Compliance [m/N] and mass [kg] of the tip, see `Point`.
+
+        Returns
+        -------
+        ModalModel
+            The modes, with `phi` positive.
+
+        Raises
+        ------
+        ValueError
+            If a pole is not in the upper left half plane, or a residue is far from that of a real mode.
+
+        Warns
+        -----
+        SuspiciousValue
+            If the phase of a residue is more than 10 degrees off the phase for a real mode.
+
+        Notes
+        -----
+        A response is the sum of R_k/(i w - lambda_k) and conjugates. R_k = phi_k^2/(2 i omega_dk) over a
+        force, and -Gamma_k phi_k/(2 i omega_dk) over an acceleration. A derivative multiplies by lambda_k.
+
+        Examples
+        --------
+        >>> from beam import ModalModel
+        >>> test = dict(poles=[-1.8 + 154j], force_residues=[-0.208j], base_residues=[0.0026j])
+        >>> ModalModel.from_residues(**test).phi.round(2).tolist()  # [kg^(-1/2)]
+        [8.0]
+        """
+        rows = modes_of_residues(poles, force_residues, base_residues, response)
+        c, m = static_compliance, tip_mass
+        return cls(**rows, static_compliance=c, tip_mass=m, points={}, dimensionless=False)
+
     @property
     def n_modes(self) -> int:
         """Number of modes."""
@@ -212,9 +262,8 @@ class ModalModel:
         """
         load = np.zeros(self.n_modes)
         for name, force in require_kind("forces", forces, Mapping, "a mapping of points to forces").items():
-            require(
-                name in self.points, "forces", f"names {shown(name)}; points are {', '.join(self.points)}"
-            )
+            words = f"names {shown(name)}; points are {', '.join(self.points)}"
+            require(name in self.points, "forces", words)
             load += require_within(f"forces[{name!r}]", force, "N") * self.points[name].row
         return load
 
@@ -249,45 +298,3 @@ class ModalModel:
         rows, base = {name: getattr(self, name) for name in UNITS}, (mass, suspension_hz, damping_ratio)
         rows |= modes_on_exciter(rows, self.leading_mode, *base, measured_on_it)
         return ModalModel(**rows, dimensionless=self.dimensionless)
-
-
-def single_mode(*, free_period: float, decay_rate: float) -> ModalModel:
-    """Return a model with one mode of unit mass, phi = participation = 1: the letter's equation (1).
-
-    Parameters
-    ----------
-    free_period : float
-        Period T of the free *damped* oscillation [s], positive; omega^2 = (2 pi / T)^2 + (decay_rate / 2)^2.
-    decay_rate : float
-        The letter's mu [1/s], not negative: amplitudes fall as exp(-mu t / 2).
-
-    Returns
-    -------
-    ModalModel
-        The model with this mode, n_modes = 1.
-
-    Raises
-    ------
-    ValueError
-        If `free_period` is not positive, or `decay_rate` is negative.
-    TypeError
-        If a value is not a number.
-
-    See Also
-    --------
-    ModalModel : A model with any number of modes.
-    free_period_change : The derivative with respect to the free period.
-    contact.ImpactOscillator : The model with a drive and a stop.
-
-    Examples
-    --------
-    >>> from beam import single_mode
-    >>> spring = single_mode(free_period=40.80e-3, decay_rate=3.56)
-    >>> round(float(spring.omega[0]), 2), round(float(spring.frequencies_hz[0]), 2)  # [rad/s], [Hz]
-    (154.01, 24.51)
-    """
-    require_within("free_period", free_period, "s", above=0)
-    require_within("decay_rate", decay_rate, "1/s", low=0)
-    omega = np.hypot(2.0 * np.pi / free_period, 0.5 * decay_rate)
-    one = np.ones(1)
-    return ModalModel(omega=omega * one, decay_rate=decay_rate * one, phi=one, participation=one)

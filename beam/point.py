@@ -46,6 +46,16 @@ def check_statics(owner: object, **units: str) -> None:
             object.__setattr__(owner, name, require_within(name, value, unit, low=0))
 
 
+def require_own_statics(tip: Point, old: Point | None) -> None:
+    """Refuse statics of a tip that are equal to an old tip's, unless their rows agree up to signs."""
+    if old is None or all(abs(a) == abs(b) for a, b in zip(old.row, tip.row, strict=False)):
+        return
+    words = "which belongs to another phi; it must be given for this phi, or None"
+    c, m = tip.static_compliance, tip.mass
+    require(c is None or c != old.static_compliance, "static_compliance", f"is {c} m/N, {words}")
+    require(m is None or m != old.mass, "tip_mass", f"is {m} kg, {words}")
+
+
 def row_of(name: str, values: ArrayLike, unit: str) -> NDArray[np.float64]:
     """Return a read-only float copy of shape (n,), n >= 1, all finite."""
     row = require_array(name, values, unit, dimensions=1, words="one row of numbers")

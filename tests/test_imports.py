@@ -26,8 +26,8 @@ PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
 
 FLOORS = {
     "beam": "parameters material section centreline spring spring_shapes pieces strip_element assembly modes "
-    "damping point matrices exciter residual_mode modal_model derivatives reduction frequency_equation "
-    "large_amplitude spring_mesh space export __init__",
+    "damping point matrices exciter residual_mode modal_test modal_model one_mode derivatives reduction "
+    "frequency_equation large_amplitude spring_mesh space export __init__",
     "contact": "errors machine speed_table restitution laws hertz stop drive flight plausible "
     "steady_response oscillator impacts trajectory touch engine integrators simulation sensitivity one_mode "
     "maps virtual_motion collision_numbers collision orbits.families orbits.branches orbits.shooting "

@@ -36,6 +36,7 @@ from contact import (
 )
 from contact.orbits import Change
 from studies.shell.scene import Scene, beam_at, hertz_of, single_mode_at
+from studies.shell.scene.mode_lists import LISTS
 
 Description = Literal["one_mode", "two_parameters", "beam"]
 
@@ -182,6 +183,7 @@ def fitted_scene(scene: Scene, oscillator: ImpactOscillator, frequencies: Sequen
     model, law = oscillator.model, oscillator.stop.law
     known = {name: one.value for name, one in parameters_of(oscillator).items()}
     changes: dict[str, object] = {
+        **{f"modal_data.{name}": () for name in LISTS},
         "spring.kind": "modal_data",
         "modal_data.frequencies_hz": model.frequencies_hz.tolist(),
         "modal_data.decay_rates_per_s": model.decay_rate.tolist(),

@@ -16,7 +16,6 @@ import beam
 from beam import SuspiciousValue
 from contact import NewtonRestitution
 from studies.shell.scene import SCENES, Scene, SceneError, beam_at, check, hertz_of, model_of, read_scene
-from studies.shell.scene.keys import MODE_LISTS
 from studies.shell.scene.values import KEYS, parse_override, scene_from_text
 
 DELIVERED = sorted(file.stem for file in SCENES.glob("*.toml"))
@@ -264,23 +263,3 @@ def test_files_that_cannot_be_read(tmp_path: Path):
     for name in (tmp_path / "latin.toml", tmp_path / "absent.toml", tmp_path):
         assert str(name)[:20] in refusal(scene=str(name))
     assert "letter" in refusal(scene="lettre")
-
-
-WRONG_ROWS = ("1,2,3", "1,2,three,4", "1,2,nan,4")
-
-
-def test_measured_modes_from_a_file_beside_the_scene(tmp_path: Path):
-    heading = "participation, tip_values, frequencies_hz, decay_rates_per_s"
-    (tmp_path / "modes.csv").write_text(f"{heading}\n# mode 1\n0.11,8.2,24.5,3.56\n\n0.06,-7,149,20\n")
-    own = tmp_path / "own.toml"
-    own.write_text('[spring]\nkind = "modal_data"\n[modal_data]\nfile = "modes.csv"\n')
-    scene = read_scene(own)
-    assert scene.modal_data.frequencies_hz == (24.5, 149.0) and scene.modal_data.tip_values == (8.2, -7.0)
-    assert scene.modal_data.file == ""  # the scene has become independent of the file
-    assert "twice" in refusal("modal_data.tip_values=[1.0]", scene=str(own))
-    assert "150 Hz" in refusal("drive.frequencies_hz=[150]", scene=str(own))
-    assert "30 Hz" in refusal("drive.frequencies_hz=[30]", "modes.count=1", scene=str(own))
-    lists = ",".join(MODE_LISTS)
-    for content in ("", "frequencies_hz,tip_values", lists, *(f"{lists}\n{row}" for row in WRONG_ROWS)):
-        (tmp_path / "modes.csv").write_text(content)
-        assert "modal_data" in refusal(scene=str(own))

@@ -15,9 +15,10 @@ from dataclasses import dataclass
 from studies.shell.scene.key import CALIBRATED, LETTER, OPEN, key
 
 MODE_LISTS = ("frequencies_hz", "decay_rates_per_s", "tip_values", "participation")
-"""The lists of [modal_data], one entry a mode."""
+"""The usual lists of [modal_data], one entry a mode."""
 
 SHAPES = ("flat_u", "folded_u", "cantilever", "straight_strip", "modal_data")
+RESPONSES = ("displacement", "velocity", "acceleration")
 QUANTITIES = ("displacement", "rotation")
 SUPPORTS = ("clamped", "pinned", "guided", "free")
 RULES = ("strips", "constant_ratio", "constant_loss_factor", "rayleigh", "measured")
@@ -114,11 +115,23 @@ class ModesKeys:
 class ModalDataKeys:
     """Mass-normalised modes of a structure of your own, for spring.kind modal_data: lists, or a CSV file."""
 
-    file: str = key("", "", "CSV file headed by the names of the four lists, relative to the scene")
+    file: str = key("", "", "CSV file headed by the names of the lists, relative to the scene")
     frequencies_hz: tuple[float, ...] = key((), "Hz", "undamped natural frequencies")
     decay_rates_per_s: tuple[float, ...] = key((), "1/s", "c of each mode")
+    damping_ratios: tuple[float, ...] = key(
+        (), "1", "c/(2 omega) of each mode, in place of decay_rates_per_s", low=0.0
+    )
     tip_values: tuple[float, ...] = key((), "kg^(-1/2)", "shape of each mode at the tip")
     participation: tuple[float, ...] = key((), "kg^(1/2)", "participation in base motion")
+    response: str = key("displacement", "", "response of the tip in the residues", choices=RESPONSES)
+    force_residues_re: tuple[float, ...] = key(
+        (), "", "residues over a force on the tip, m/(N s) of a displacement: real part"
+    )
+    force_residues_im: tuple[float, ...] = key((), "", "their imaginary part")
+    base_residues_re: tuple[float, ...] = key(
+        (), "", "residues over the acceleration of the base, s of a displacement: real part"
+    )
+    base_residues_im: tuple[float, ...] = key((), "", "their imaginary part")
     tip_mass_kg: float = key(0.0, "kg", "mass at the tip; 0 if not known", low=0.0)
     static_compliance_m_per_n: float = key(
         0.0, "m/N", "static compliance at the tip; 0: of these modes", low=0.0

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 import beam
 from beam import LeafSpring, ModalModel, Modes, StripSection
 from studies.shell.scene.key import OPEN, SceneError, shown
-from studies.shell.scene.keys import MODE_LISTS
+from studies.shell.scene.mode_lists import LISTS, RATES, RATIOS, RESIDUES, TIP, fault_of
 from studies.shell.scene.values import Scene
 
 SHORTEST = 1e-6
@@ -158,17 +158,43 @@ def model_of(scene: Scene) -> ModalModel:
         model = beam.reduce(modes_of(scene), damping_of(scene), scene.kept_modes)
         require_drive_below(scene, model)
         return model
-    data = scene.modal_data
+    return measured_model(scene)
+
+
+def measured_model(scene: Scene) -> ModalModel:
+    """The lowest `kept_modes` of the modes in [modal_data], however they are described."""
+    data, names = scene.modal_data, {name: f"modal_data.{name}" for name in LISTS}
+    given = {name: np.array(values) for name in LISTS if (values := scene[names[name]])}
+    if fault := fault_of(given):
+        raise SceneError("modal_data", f"{fault}; spring.kind modal_data needs lists, one entry a mode")
+    if len({values.size for values in given.values()}) > 1:
+        sizes = ", ".join(f"{name} {values.size}" for name, values in given.items())
+        raise SceneError("modal_data", f"must have lists of equal length, not of {sizes} entries")
     order = np.argsort(data.frequencies_hz, kind="stable")[: scene.kept_modes]
-    columns = [np.array(getattr(data, name)) for name in MODE_LISTS]
-    if len({values.size for values in columns}) > 1 or not order.size:
-        raise SceneError("spring.kind modal_data needs lists of equal length in modal_data, one entry a mode")
-    frequencies, rates, tip_values, participation = (values[order] for values in columns)
-    keys = {"omega": "modal_data.frequencies_hz", "decay_rate": "modal_data.decay_rates_per_s"}
-    lists = {"omega": 2.0 * np.pi * frequencies, "decay_rate": rates, "phi": tip_values}
-    tip = {"static_compliance": data.static_compliance_m_per_n or None, "tip_mass": data.tip_mass_kg or None}
-    own = {"points": {READOUT: beam.Point(row=tip_values)}, "dimensionless": data.dimensionless}
-    return scene.make(ModalModel, keys, **lists, participation=participation, **tip, **own)
+    given = {name: values[order] for name, values in given.items()}
+    omega = 2.0 * np.pi * given["frequencies_hz"]
+    rates = 2.0 * omega * given["damping_ratios"] if RATIOS[0] in given else given[RATES[0]]
+    keys = {
+        "omega": names["frequencies_hz"],
+        "decay_rate": names[(RATIOS if RATIOS[0] in given else RATES)[0]],
+    }
+    statics = {
+        "static_compliance": data.static_compliance_m_per_n or None,
+        "tip_mass": data.tip_mass_kg or None,
+    }
+    if TIP[0] in given:
+        phi, participation = (given[name] for name in TIP)
+        rows = {"omega": omega, "decay_rate": rates, "phi": phi, "participation": participation}
+        model = scene.make(ModalModel, keys, **rows, **statics)
+    else:
+        poles = -0.5 * rates + 1j * np.sqrt(np.maximum(omega**2 - 0.25 * rates**2, 0.0))
+        force, base = (given[re] + 1j * given[im] for re, im in (RESIDUES[:2], RESIDUES[2:]))
+        keys = {"poles": "modal_data", "response": "modal_data.response"}
+        keys |= {"force_residues": "modal_data.force_residues", "base_residues": "modal_data.base_residues"}
+        rows = {"poles": poles, "force_residues": force, "base_residues": base}
+        model = scene.make(ModalModel.from_residues, keys, **rows, **statics)
+    points = {READOUT: beam.Point(row=model.phi)}
+    return dataclasses.replace(model, points=points, dimensionless=data.dimensionless)
 
 
 def require_drive_below(scene: Scene, model: ModalModel, frequency: float | None = None) -> None:

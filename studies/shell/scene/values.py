@@ -25,7 +25,8 @@ from typing import Any, TypeVar
 from beam import Refusal
 from studies.shell.scene import keys as scene_keys
 from studies.shell.scene.key import GIVEN, LETTER, Key, SceneError, Value, shown
-from studies.shell.scene.keys import MODE_LISTS, FurtherStopKeys
+from studies.shell.scene.keys import FurtherStopKeys
+from studies.shell.scene.mode_lists import LISTS, lists_in
 
 T = TypeVar("T")
 
@@ -215,24 +216,11 @@ def parse_override(text: str) -> tuple[str, object]:
 
 
 def with_measured_modes(scene: Scene) -> Scene:
-    """The scene with the lists in place of the file of measured modes: it then depends on no other file.
-
-    The file has the names of the four lists of [modal_data] as its heading, in any order, and one line of
-    comma-separated numbers in the units of the keys for each mode; lines that begin with # are skipped.
-    """
-    if any(getattr(scene.modal_data, entry) for entry in MODE_LISTS):
+    """The scene with the lists in place of the file of measured modes: it then depends on no other file."""
+    if any(getattr(scene.modal_data, entry) for entry in LISTS):
         raise SceneError("modal_data gives its modes twice, as lists and as a file: drop one of them")
-    try:
-        text = Path(scene.modal_data.file).read_text(encoding="utf-8-sig")
-        lines = (line for line in text.splitlines() if line.strip()[:1] not in ("", "#"))
-        heading, *rows = ([word.strip() for word in line.split(",")] for line in lines)
-        columns = dict(zip(heading, zip(*rows, strict=True), strict=True))
-        lists = {f"modal_data.{name}": list(map(float, columns.pop(name))) for name in MODE_LISTS}
-    except (OSError, ValueError, KeyError) as error:
-        name, wanted = shown(scene.modal_data.file), ",".join(MODE_LISTS)
-        reason = getattr(error, "strerror", None) or f"it needs columns {wanted}, a number in each cell"
-        raise SceneError(f"modal_data.file {name} cannot be read: {reason}") from error
-    return scene.replace({"modal_data.file": "", **lists})
+    lists = lists_in(scene.modal_data.file).items()
+    return scene.replace({"modal_data.file": ""} | {f"modal_data.{name}": values for name, values in lists})
 
 
 def doubts(scene: Scene) -> Iterator[str]:
