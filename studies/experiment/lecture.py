@@ -6,11 +6,13 @@ Computed with all modes, at one drive frequency:
     table       impacts in how many shakes, their speed and force, over a scan up and down
     slides      what grazing is, and the orbit diagram, in 16:9 whatever the --style
 
-An amplitude is the largest displacement of the base.  Settings are rounded up where impacts begin, and down
-where they end.  With --film one period of the orbit at --excess is filmed, slow at its impacts.
+    film        one period of the orbit at --excess, slow at its impacts
 
-Run:     python -m studies lecture --scene steel_ruler [--frequency HZ] [--excess E] [--film]
-Writes:  lecture.txt, seen.csv, slide_1.png, slide_2.png; with --film motion.gif, motion.mp4, motion.pvd
+An amplitude is the largest displacement of the base.  Settings are rounded up where impacts begin, and down
+where they end.
+
+Run:     python -m studies lecture --scene steel_ruler [--frequency HZ] [--excess E] [--frames 0]
+Writes:  lecture.txt, seen.csv, slide_1.png, slide_2.png, motion.gif, motion.pvd; motion.mp4 (extra `video`)
 """
 
 from __future__ import annotations
@@ -32,7 +34,6 @@ from studies import letter
 from studies.experiment import film as filming
 from studies.experiment.trace import NEEDS, Trace, conditions, repeats, trace_of
 from studies.physics.descriptions import BELOW, both_ways
-from studies.shell.digits import written
 from studies.shell.film import MOST_FRAMES
 from studies.shell.options import HERTZ, Within, style_of
 from studies.shell.scene import Scene, beam_at, harmonic, model_of, require_drive_below
@@ -125,7 +126,7 @@ def lowered(
     return last, math.nan
 
 
-@study(needs=NEEDS, quick={"frames": 60}, at=conditions)
+@study(needs=NEEDS, quick={"frames": 20}, at=conditions)
 def lecture(
     scene: Scene,
     run: Run,
@@ -134,8 +135,7 @@ def lecture(
         float, "amplitude over grazing, less one, of the orbit that is filmed", Within(-1, 1e6, open=True)
     ] = letter.TIME_TRACE_EXCESS,
     frequency: Annotated[float | None, "drive frequency (Hz); by default one of the scene", HERTZ] = None,
-    film: Annotated[bool, "film one period of the orbit"] = False,
-    frames: Annotated[int, "frames of the film, with --film", Within(1, MOST_FRAMES)] = 240,
+    frames: Annotated[int, "frames of the film; 0: no film", Within(0, MOST_FRAMES)] = 120,
 ) -> Mapping[str, object]:
     """Compute, store and draw."""
     (hz,), _ = conditions(harmonic(scene), {"frequency": frequency, "excess": excess})
@@ -145,7 +145,7 @@ def lecture(
     cycles, grazing = max(scene.scan.settle_cycles, 1), 1e3 * strobed.oscillator.grazing_amplitude()
     places = max(COARSE, -math.floor(math.log10(SHARE * grazing)))
     begins = math.ceil(grazing * 10.0**places) / 10.0**places
-    at_excess = {"near": scene.scan.born_excess, "begins": begins / grazing - 1.0, "filmed": excess}
+    at_excess = {"begins": begins / grazing - 1.0, "filmed": excess}
     orbits = {name: onset_orbit(strobed, e, most_cycles=cycles) for name, e in at_excess.items()}
     last, ends = lowered(strobed, orbits["begins"].end, begins, places, cycles)
     # rounded, so that no amplitude of the scan lies on the end of an orbit
@@ -154,8 +154,7 @@ def lecture(
     values = np.linspace(-min(scene.scan.reach_below * reach, 0.5), reach, points)
     scans = both_ways(strobed, values, partial(scan, strobed, run, cycles))
     seen = {name: in_words(one.m, one.impacts) + f" (p{one.m})" * (one.m > 1) for name, one in orbits.items()}
-    mm = {"grazing": grazing, "begins": begins, "last": last, "ends": ends}
-    mm["gap"] = 1e3 * strobed.oscillator.stop.gap
+    mm = {"grazing": grazing, "begins": begins, "last": last, "ends": ends, "gap": 1e3 * scene.stop.gap_m}
     mm["filmed"] = grazing * (1.0 + excess)
     said = sentences(scene, hz, cycles, places, mm, seen)
     for sentence in said:
@@ -164,23 +163,19 @@ def lecture(
     rows = [row for scanned in scans.values() for row in merged(scanned)]
     run.table("seen", rows, "What is seen at which amplitude of the base.", of=Seen)
     below, above = strobed.at(BELOW), strobed.at(at_excess["begins"])
-    traces = {
-        f"{(1.0 + BELOW) * grazing:.{places + 1}f} mm: no impact": trace_of(
-            below.oscillator, below.steady(), SHAKES
-        ),
-        f"{begins:.{places}f} mm: ▼ {seen['begins']}": trace_of(
-            above.oscillator, orbits["begins"].end, SHAKES
-        ),
-    }
+    titles = (
+        f"{(1.0 + BELOW) * grazing:.{places + 1}f} mm: no impact",
+        f"{begins:.{places}f} mm: ▼ {seen['begins']}",
+    )
+    starts = (below.oscillator, below.steady()), (above.oscillator, orbits["begins"].end)
+    traces = {title: trace_of(*start, SHAKES) for title, start in zip(titles, starts, strict=True)}
     draw(run, mm, places, traces, scans)
-    if film:
+    if frames:
         filmed, oscillator = orbits["filmed"], strobed.at(excess).oscillator
         trace = trace_of(oscillator, filmed.end, filmed.m or filming.APERIODIC)
         words = f"at {hz:g} Hz, amplitude {mm['filmed']:.{places}f} mm: {seen['filmed']}"
         filming.film(scene, run, oscillator, filmed, trace, words, frames=frames)
     run.finding(f"Where the ball begins to hit the plate, {repeats(orbits['begins'].m)}.")
-    if last < grazing:
-        run.finding(f"Lowered again, regular impacts go on to {written(grazing - last, 2)} mm below grazing.")
     return {"rows": rows, "frequency_hz": hz, "amplitudes_mm": mm, "seen": seen, "sentences": said}
 
 
@@ -191,27 +186,21 @@ def sentences(
     free = f" with {1e3 * scene.spring.leg_length_m:.4g} mm free" if scene.spring.kind == "cantilever" else ""
     begins, apart, step = mm["begins"], mm["grazing"] - mm["last"], 10.0**-places
     size = 1e-3 * begins * (2.0 * math.pi * hz) ** 2 / g
-    said = [
-        f"Clamp the {spring_in_words(scene)}{free}.",
-        f"Hold the plate {1e3 * scene.stop.gap_m:.2f} mm from the resting ball.",
-        f"Shake the clamp at {hz:g} Hz, and wait up to {shakes / hz:.0f} s at each amplitude.",
-        f"Raise the amplitude to {begins:.{places}f} mm: the ball begins to hit the plate, "
-        f"with {seen['begins']}.",
-        f"That is {2.0 * begins:.{places}f} mm from peak to peak, with a peak acceleration of {size:.3g} g.",
-    ]
     ends = f"Lower it to {mm['ends']:.{places}f} mm: the impacts end."
-    said += ["Lower it again: the impacts go on." if math.isnan(mm["ends"]) else ends]
-    said += [f"More exactly, impacts begin at {mm['grazing']:.{places + 2}f} mm."]
-    if not math.isnan(apart):
-        said += [f"Lowered, regular impacts end at {mm['last']:.{places + 2}f} mm."]
-    if apart < step:
-        small = f"This hysteresis of {apart:.2g} mm is less than {step:g} mm: only finer steps show it."
-        said += [small if apart > 0.0 else "There is no hysteresis."]
-    if mm["ends"] < mm["last"] - step:
-        said += ["Below that, irregular impacts can go on for the whole wait."]
-    if seen["near"] != seen["begins"]:
-        said += [f"Closer to grazing than these settings, the audience sees: {seen['near']}."]
-    return [*said, f"At {mm['filmed']:.{places}f} mm the audience sees: {seen['filmed']}."]
+    exact = f"More exactly, impacts begin at {mm['grazing']:.{places + 2}f} mm"
+    exact += f", and regular impacts end at {mm['last']:.{places + 2}f} mm" if math.isfinite(apart) else ""
+    small = f"This hysteresis of {apart:.2g} mm is less than {step:g} mm: only finer steps show it."
+    return [
+        f"Clamp the {spring_in_words(scene)}{free}.",
+        f"Hold the plate {mm['gap']:.2f} mm from the resting ball.",
+        f"Shake the clamp at {hz:g} Hz, and wait up to {shakes / hz:.0f} s at each amplitude.",
+        f"Raise the amplitude to {begins:.{places}f} mm: the ball begins to hit, with {seen['begins']}.",
+        f"That is {2.0 * begins:.{places}f} mm from peak to peak, with a peak acceleration of {size:.3g} g.",
+        ends if math.isfinite(mm["ends"]) else "Lower it again: the impacts go on.",
+        f"{exact}.",
+        *([small if apart > 0.0 else "There is no hysteresis."] if apart < step else []),
+        f"At {mm['filmed']:.{places}f} mm the audience sees: {seen['filmed']}.",
+    ]
 
 
 def draw(
@@ -243,16 +232,12 @@ def draw(
             points = np.reshape([strobes for _, strobes in scans[way]], (-1, STROBES))
             names, settled = {"label": f"amplitude {name}"}, [row.m > 0 for row, _ in scans[way]]
             plots.strobes(axis, amplitude, points, settled, pale="pale: irregular", **names, **look)
-        sides = (("left", 3), ("right", -3))[:: -1 if mm["last"] > mm["grazing"] else 1]
-        for name, key, (side, apart) in (
-            ("impacts begin", "grazing", sides[0]),
-            ("regular impacts end", "last", sides[1]),
-        ):
+        for name, key in (("impacts begin", "grazing"), ("regular impacts end", "last")):
             if math.isfinite(mm[key]):
                 axis.axvline(mm[key], **{**plotting.GUIDE, "color": "black"})
-                where = {"xycoords": axis.get_xaxis_transform(), "textcoords": "offset points", "ha": side}
-                words = f"{name}\n{mm[key]:.{places + 2}f} mm"
-                axis.annotate(words, (mm[key], 1.0), (apart, 2), **where)
+                side = "left" if (key == "grazing") == (mm["grazing"] >= mm["last"]) else "right"
+                words, up = f" {name} \n {mm[key]:.{places + 2}f} mm ", axis.get_xaxis_transform()
+                axis.text(mm[key], 1.0, words, transform=up, ha=side, va="bottom")
         plotting.label(axis.xaxis, "amplitude of the clamp", "mm")
         plotting.label(axis.yaxis, "ball, once in each shake", "mm")
         words = "end at" if mm["last"] >= mm["grazing"] else "go on below"
