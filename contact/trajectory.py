@@ -112,17 +112,17 @@ class Trajectory:
         require(self.time.size > 0, "trajectory", words)
         return {name: getattr(self, name) for name in SAMPLES}
 
-    def plot(self, axes: Axes | None = None) -> Axes:
+    def plot(self, axes: Axes | None = None, **look: Any) -> Axes:
         """Draw the tip [mm] against time [s], with the stops at the tip and the impacts on them.
 
-        It draws on `axes` of matplotlib, or on those of a new figure, and returns them.  ValueError is raised
-        for a trajectory without samples.
+        It draws on `axes` of matplotlib, or on those of a new figure, and returns them; `look` are properties
+        of the line.  ValueError is raised for a trajectory without samples.
         """
         samples, felt = self._columns, self.impacts.kind != GRAZE
         stops = self.oscillator.stops
         gaps = {number: 1e3 * stop.side * stop.gap for number, stop in enumerate(stops) if stop.at == "tip"}
         marks = zip(self.impacts.start[felt].tolist(), self.impacts.stop[felt].tolist(), strict=True)
-        axes = plots.motion(axes, samples["time"], 1e3 * samples["tip"], gaps, list(marks))
+        axes = plots.motion(axes, samples["time"], 1e3 * samples["tip"], gaps, list(marks), **look)
         axes.set(xlabel="time (s)", ylabel="tip (mm)")
         return axes
 

@@ -37,6 +37,28 @@ def p4_and_its_hysteresis(found):
         np.testing.assert_allclose(scan.points[:, 4:], scan.points[:, :4], atol=1e-9)
 
 
+def whole_branch(found):
+    """The scan follows the motion in time: it loses the orbit at the fold, and before has the same speeds."""
+    branch, seen, step = found["branch"], found["seen"], 0.02 / 40
+    fold = branch.of_kind("fold")[0]
+    assert seen[-1, 0] - step < fold.excess < seen[-1, 0]
+    good = [orbit for orbit in branch.orbits if orbit.stable and orbit.admissible]
+    places, speeds = np.transpose([(orbit.excess, 1e3 * orbit.speed) for orbit in [fold, *good]])
+    away = seen[seen[:, 0] > 0.8 * fold.excess]  # chords of the curve are too far from it next to the fold
+    assert len(away) > 25 and np.interp(away[:, 0], places, speeds) == approx(away[:, 1], rel=0.01)
+
+
+def modal_test(found):
+    model, true, w = found["measured"], found["seen"], 2.0 * np.pi * np.linspace(5.0, 60.0, 99)[:, None]
+    responses = [
+        (one.phi * one.participation / (one.omega**2 - w**2 + 1j * w * one.decay_rate)).sum(axis=1)
+        for one in (model, true)
+    ]
+    assert np.abs(responses[0] / responses[1] - 1.0).max() < 0.03
+    forces = [run.impacts.peak_force.max() for run in found["runs"].values()]
+    assert forces[1] == approx(forces[0], rel=0.05)
+
+
 def one_collision(found):
     hit, tip, outgoing = found["hit"], found["beam"].tip, found["outgoing"]
     late = outgoing.time - hit.time - hit.delay

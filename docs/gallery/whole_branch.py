@@ -30,8 +30,8 @@ branch = follow(Shooting(oscillator=spring, m=4))
 print(branch)
 
 # %%
-# The drive is lowered from 1 % above grazing.  At each step the motion settles, and the speed of its impact is
-# kept.
+# The drive is lowered from 1 % above grazing.  At each step the motion settles, and the program keeps the
+# speed of its impact.
 strobed, excesses = StroboscopicMap(oscillator=spring), np.linspace(0.01, -0.01, 41)
 state, seen = strobed.at(excesses[0]).steady(), []
 for excess in excesses:
@@ -42,7 +42,9 @@ for excess in excesses:
     if settled.m == 4:
         seen.append((excess, 1e3 * impacts.approach.max()))
 seen = np.array(seen)
-print(f"The scan loses the orbit below {seen[-1, 0]:.4f}; the fold is at {branch.events[0].orbit.excess:.4f}.")
+print(
+    f"The scan loses the orbit below {seen[-1, 0]:.4f}; the fold is at {branch.events[0].orbit.excess:.4f}."
+)
 
 # %%
 # Circles belong to the scan.
