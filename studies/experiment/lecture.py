@@ -3,7 +3,7 @@
 Computed with all modes, at one drive frequency:
 
     settings    amplitudes of the base at which impacts begin, and end when it is lowered again
-    table       impacts in how many shakes, their speed and force, over a scan up and down
+    table       impacts in how many shakes, over a scan up and down
     slides      what grazing is, and the orbit diagram, in 16:9 whatever the --style
 
     film        one period of the orbit at --excess, slow at its impacts
@@ -19,21 +19,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
-from functools import partial
+from dataclasses import dataclass
 from itertools import groupby
 from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.constants import g
 
-from contact import ContactError, State, StroboscopicMap, plots, simulate
+from contact import State, StroboscopicMap, plots
 from contact.orbits import onset_orbit, orbit_end, settle
 from studies import letter
 from studies.experiment import film as filming
 from studies.experiment.trace import NEEDS, Trace, conditions, repeats, trace_of
-from studies.physics.descriptions import BELOW, both_ways
+from studies.physics.descriptions import BELOW, Diagram, up_and_down
 from studies.shell.film import MOST_FRAMES
 from studies.shell.options import HERTZ, Within, style_of
 from studies.shell.scene import Scene, beam_at, harmonic, model_of, require_drive_below
@@ -58,12 +56,6 @@ class Seen:
     seen: Annotated[str, "what is seen"]
     m: int
     impacts: Annotated[int | None, "impacts in a period; none for a motion without a period"]
-    approach: Annotated[float, "largest approach speed [mm/s]"]
-    peak_force: Annotated[float, "largest contact force [N]; none under Newton's law"]
-
-
-Scanned = list[tuple[Seen, NDArray[np.float64]]]
-"""Each amplitude of a scan, with the ball once in each shake [mm]."""
 
 
 def in_words(m: int, impacts: int) -> str:
@@ -74,34 +66,14 @@ def in_words(m: int, impacts: int) -> str:
     return f"{count} in {'each shake' if m == 1 else f'{m} shakes'}" if m else "irregular impacts"
 
 
-def scan(
-    strobed: StroboscopicMap, run: Run, cycles: int, way: str, excesses: NDArray[np.float64], state: State
-) -> tuple[Scanned, State]:
-    """The settled motions at these amplitudes, each from the end of the one before; and the last state."""
-    found, grazing = Scanned(), 1e3 * strobed.oscillator.grazing_amplitude()
-    for excess in excesses.tolist():
-        here, at = strobed.at(excess), grazing * (1.0 + excess)
-        try:
-            settled = settle(here, state, most_cycles=cycles)
-            m, impacts, state = settled.m, settled.impacts, settled.end
-            touches = simulate(here.oscillator, state, periods=m or STROBES).impacts
-            points = 1e3 * here.tip(here.orbit(state, STROBES).points)
-        except ContactError as error:
-            run.failed(f"{way}ward scan, {at:.6g} mm", error)
-            continue
-        most = (
-            float(np.fmax.reduce(v, initial=np.nan)) for v in (1e3 * touches.approach, touches.peak_force)
-        )
-        found.append((Seen(way, at, at, in_words(m, impacts), m, impacts if m else None, *most), points))
-    return found, state
-
-
-def merged(scanned: Scanned) -> Iterator[Seen]:
-    """The rows of a scan: neighbouring amplitudes with the same motion are one."""
-    for _, group in groupby((row for row, _ in scanned), key=lambda row: row.seen):
-        rows = list(group)
-        speed, force = (np.fmax.reduce([getattr(one, n) for one in rows]) for n in ("approach", "peak_force"))
-        yield replace(rows[0], to_mm=rows[-1].to_mm, approach=float(speed), peak_force=float(force))
+def seen_in(way: str, diagram: Diagram, grazing: float) -> Iterator[Seen]:
+    """The rows of a scan: neighbouring amplitudes with the same motion are one; `grazing` is in mm."""
+    motions = zip(diagram.excess.tolist(), diagram.m.tolist(), diagram.impacts.tolist(), strict=True)
+    known = [motion for motion, kind in zip(motions, diagram.kind, strict=True) if kind != "failed"]
+    for words, group in groupby(known, key=lambda motion: in_words(*motion[1:])):
+        first, *others = group
+        first_mm, last_mm = (grazing * (1.0 + one[0]) for one in (first, [first, *others][-1]))
+        yield Seen(way, first_mm, last_mm, words, first[1], first[2] if first[1] else None)
 
 
 def lowered(
@@ -152,7 +124,9 @@ def lecture(
     reach = float(f"{max(scene.scan.narrowest, np.nan_to_num(abs(1.0 - np.fmax(last, ends) / grazing))):.2g}")
     points = min(scene.scan.points, 21) if run.quick else scene.scan.points
     values = np.linspace(-min(scene.scan.reach_below * reach, 0.5), reach, points)
-    scans = both_ways(strobed, values, partial(scan, strobed, run, cycles))
+    scans = up_and_down(strobed, values, observe=strobed.tip, settle_cycles=cycles, record_cycles=STROBES)
+    for failure in (one for diagram in scans.values() for one in diagram.failures):
+        run.failed("scan", failure)
     seen = {name: in_words(one.m, one.impacts) + f" (p{one.m})" * (one.m > 1) for name, one in orbits.items()}
     mm = {"grazing": grazing, "begins": begins, "last": last, "ends": ends, "gap": 1e3 * scene.stop.gap_m}
     mm["filmed"] = grazing * (1.0 + excess)
@@ -160,7 +134,7 @@ def lecture(
     for sentence in said:
         run.say(sentence)
     run.text("lecture.txt", "\n".join(said) + "\n", "What to set on the bench, and what is seen.")
-    rows = [row for scanned in scans.values() for row in merged(scanned)]
+    rows = [row for way, diagram in scans.items() for row in seen_in(way, diagram, grazing)]
     run.table("seen", rows, "What is seen at which amplitude of the base.", of=Seen)
     below, above = strobed.at(BELOW), strobed.at(at_excess["begins"])
     titles = (
@@ -204,7 +178,7 @@ def sentences(
 
 
 def draw(
-    run: Run, mm: Mapping[str, float], places: int, traces: Mapping[str, Trace], scans: Mapping[str, Scanned]
+    run: Run, mm: Mapping[str, float], places: int, traces: Mapping[str, Trace], scans: Mapping[str, Diagram]
 ) -> None:
     """The two slides: the motions below and above grazing by their titles, and the scans."""
     from studies.shell import plotting  # matplotlib is slow to import
@@ -228,10 +202,9 @@ def draw(
         run.figure("slide_1", figure, "The bench, and the ball just below and just above grazing.")
         figure, axis = plotting.new_figure()
         for way, name, look in (("up", "raised", plotting.UP), ("down", "lowered", plotting.DOWN)):
-            amplitude = np.array([row.from_mm for row, _ in scans[way]])
-            points = np.reshape([strobes for _, strobes in scans[way]], (-1, STROBES))
-            names, settled = {"label": f"amplitude {name}"}, [row.m > 0 for row, _ in scans[way]]
-            plots.strobes(axis, amplitude, points, settled, pale="pale: irregular", **names, **look)
+            found, named = scans[way], {"label": f"amplitude {name}", "pale": "pale: irregular"}
+            amplitude = mm["grazing"] * (1.0 + found.excess)
+            plots.strobes(axis, amplitude, 1e3 * found.points, found.m > 0, **named, **look)
         for name, key in (("impacts begin", "grazing"), ("regular impacts end", "last")):
             if math.isfinite(mm[key]):
                 axis.axvline(mm[key], **{**plotting.GUIDE, "color": "black"})
