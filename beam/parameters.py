@@ -109,7 +109,7 @@ def shown(value: object) -> str:
 def brief(value: object) -> str:
     """Return the value for a sentence like `shown`, but texts without quotes."""
     try:
-        line = "".join(c if c.isprintable() else " " for c in str(value))
+        line = " ".join("".join(c if c.isprintable() else " " for c in str(value)).split())
     except ValueError:  # an integer with more digits than the interpreter is willing to print
         return "a very large number"
     return line if len(line) <= LONGEST_SHOWN else line[: LONGEST_SHOWN - 3] + "..."

@@ -15,25 +15,27 @@ import inspect
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, fields
+from enum import Enum
 from functools import cache
 from html import escape
 from typing import Any, dataclass_transform
 
 import numpy as np
 
-WIDEST, LINES, NESTED, SHORT = 100, 8, 60, 4
+WIDEST, LINES, NESTED, SHORT = 100, 8, 75, 4
 """Characters of a line, and lines, of a record; characters of a record within a record; numbers of an array
 that are all shown."""
 
 ROWS = 12
 """Rows of a table in a notebook."""
 
+Record = Any  # an instance of a record, or one of its values
 PARAMETER = re.compile(r"^(\w+(?:, \w+)*) : .*\n((?:    .*\n|\n)*)", re.MULTILINE)
 UNIT = re.compile(r"\[(1\]|(?:1/|m|kg|s|Hz|N|Pa|J|rad)[^\],]*)")
 
 
 @dataclass_transform(kw_only_default=True, frozen_default=True, eq_default=False, field_specifiers=(field,))
-def record(kind: Any = None, *, eq: bool = False, init: bool = True) -> Any:
+def record(kind: Record = None, *, eq: bool = False, init: bool = True) -> Record:
     """Make a class a frozen, keyword-only dataclass that prints with units; `eq` compares by value."""
 
     def made(cls: type) -> type:
@@ -55,7 +57,7 @@ def units_of(kind: type) -> dict[str, str]:
     return found
 
 
-def in_words(one: Any) -> str:
+def in_words(one: Record) -> str:
     """Return the fields of a record with their units, in `LINES` lines at most."""
     parts = [f"{name}={text}" for name, text in _entries(one)]
     line = f"{type(one).__name__}({', '.join(parts)})"
@@ -67,7 +69,7 @@ def in_words(one: Any) -> str:
     return "\n    ".join(line if len(line) <= WIDEST else f"{line[: WIDEST - 3]}..." for line in lines) + ")"
 
 
-def as_table(one: Any) -> str:
+def as_table(one: Record) -> str:
     """Return a record as tables in HTML: its fields, and row by row its arrays that have one length."""
     columns = {each.name: getattr(one, each.name) for each in fields(one) if each.repr}
     columns = {name: x for name, x in columns.items() if isinstance(x, np.ndarray) and x.ndim == 1}
@@ -82,7 +84,7 @@ def as_table(one: Any) -> str:
 def rows_in_html(columns: Mapping[str, np.ndarray], units: Mapping[str, str]) -> str:
     """Return columns of one length as a table in HTML, which shows the first `ROWS` rows."""
     count = max((column.size for column in columns.values()), default=0)
-    heads = (f"{name} [{units[name]}]" if units.get(name) else name for name in columns)
+    heads = (name if units.get(name, "1") == "1" else f"{name} [{units[name]}]" for name in columns)
     rows = ["".join(f"<th>{head}</th>" for head in heads)]
     for row in zip(*(column[:ROWS] for column in columns.values()), strict=True):
         rows.append("".join(f"<td>{_number(value)}</td>" for value in row))
@@ -90,7 +92,7 @@ def rows_in_html(columns: Mapping[str, np.ndarray], units: Mapping[str, str]) ->
     return f"<table>{''.join(f'<tr>{row}</tr>' for row in rows)}</table>" if columns else ""
 
 
-def _entries(one: Any) -> Iterator[tuple[str, str]]:
+def _entries(one: Record) -> Iterator[tuple[str, str]]:
     """Name and text of the fields that differ from their defaults."""
     units = units_of(one.__class__)
     for each in fields(one):
@@ -99,7 +101,7 @@ def _entries(one: Any) -> Iterator[tuple[str, str]]:
             yield each.name, _text(value, units.get(each.name, ""))
 
 
-def _text(value: Any, unit: str) -> str:
+def _text(value: Record, unit: str) -> str:
     """A value with its unit, in a few words."""
     if isinstance(value, np.ndarray) and (value.ndim != 1 or value.size > SHORT):
         numbers = value[np.isfinite(value)] if value.dtype.kind in "iuf" else value[:0].ravel()
@@ -114,21 +116,20 @@ def _text(value: Any, unit: str) -> str:
         return f"{{{', '.join(map(str, value))}}}"
     if type(value).__repr__ is in_words:
         return _cut(value)
-    text = f"{_number(value)} {unit}".rstrip() if isinstance(value, float | np.number) else ""
+    plain = isinstance(value, float | int | np.number) and not isinstance(value, bool | Enum)
+    text = f"{_number(value)} {unit}".rstrip() if plain else ""
     text = text or getattr(value, "__name__", "") or repr(value)
     return text if len(text) <= WIDEST and "\n" not in text else f"{type(value).__name__}(...)"
 
 
-def _cut(one: Any) -> str:
-    """A record within another one: as many of its fields as `NESTED` characters hold."""
-    name, line = type(one).__name__, ""
-    for field_name, text in _entries(one):
-        longer = f"{line}{', ' if line else ''}{field_name}={text}"
-        if len(name) + len(longer) > NESTED:
-            return f"{name}({line}{', ' if line else ''}...)"
-        line = longer
-    return f"{name}({line})"
+def _cut(one: Record) -> str:
+    """A record within another one: the fields for which `NESTED` characters are enough."""
+    line, left = f"{type(one).__name__}(", False
+    for name, text in _entries(one):
+        longer = f"{line}{'' if line.endswith('(') else ', '}{name}={text}"
+        line, left = (line, True) if len(longer) > NESTED else (longer, left)
+    return f"{line}{', ' if left and not line.endswith('(') else ''}{'...' if left else ''})"
 
 
-def _number(value: Any) -> str:
+def _number(value: Record) -> str:
     return f"{value:.6g}" if isinstance(value, float) else str(value)

@@ -6,7 +6,7 @@ import math
 from dataclasses import field
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,7 +16,11 @@ from contact.flight.clock import split_time
 from contact.flight.modal_flow import steady_motion
 from contact.flight.numbers import Numbers
 from contact.oscillator import ImpactOscillator
+from contact.state import ImpactKind
 from contact.tables import dataframe, write_csv
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
 
 CSV = dict(stop="1", kind="1", together="1", start="s", end="s", approach="m/s", rebound="m/s", loss="J")
 CSV |= dict(impulse="N s", peak_force="N")
@@ -140,10 +144,8 @@ class Impacts:
 
     def __repr__(self) -> str:
         """The number of touches, and their largest speed and force."""
-        words = f"Impacts({len(self)} touches"
-        if not len(self):
-            return f"{words})"
-        words += f" from {self.start[0]:.6g} to {self.start[-1]:.6g} s"
+        words = f"Impacts(touches={len(self)}"
+        words += f", start={self.start[0]:.6g} to {self.start[-1]:.6g} s" if len(self) else ""
         for name, values in (("approach", self.approach), ("peak_force", self.peak_force)):
             known = values[np.isfinite(values)]
             words += f", {name}<={known.max():.6g} {CSV[name]}" if known.size else ""
@@ -156,13 +158,14 @@ class Impacts:
     @property
     def _columns(self) -> dict[str, np.ndarray]:
         """The columns of a table of touches."""
-        return {name: getattr(self, name) for name in CSV}
+        kinds = np.array([kind.name for kind in ImpactKind])[self.kind]
+        return {name: kinds if name == "kind" else getattr(self, name) for name in CSV}
 
     def to_csv(self, path: str | Path) -> None:
         """Write one line a touch; the first line names the columns and their units."""
         write_csv(path, self._columns, CSV)
 
-    def to_dataframe(self) -> Any:
+    def to_dataframe(self) -> DataFrame:
         """Return a pandas.DataFrame with one row a touch, and the units in its ``attrs["units"]``.
 
         ImportError is raised if pandas is not installed.

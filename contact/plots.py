@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 __all__ = ["branch", "motion", "strobes"]
 
+Look = Any  # property of a line or a text of matplotlib
 PALE = 0.35
 """Opacity of what did not settle, and of orbits that are not admissible."""
 
@@ -29,7 +30,7 @@ BRANCHES = {
 
 
 def _on(axes: Axes | None) -> Axes:
-    """The axes, or those of a new figure."""
+    """The axes, or on a new figure."""
     if axes is None:
         from matplotlib import pyplot  # slow to import
 
@@ -43,7 +44,7 @@ def motion(
     displacement: ArrayLike,
     stops: Mapping[int, float],
     impacts: Sequence[tuple[float, int]],
-    **look: Any,
+    **look: Look,
 ) -> Axes:
     """Draw a displacement against time, with lines at the stops and at the impacts.
 
@@ -71,13 +72,13 @@ def motion(
     named = set[int]()
     for at, number in impacts:
         words = "_" if number in named else f"impact on stop {number}" if several else "impact"
-        line: Any = {"color": f"C{number + 1}", "linewidth": 0.6, "linestyle": ":", "zorder": 1}
+        line: Look = {"color": f"C{number + 1}", "linewidth": 0.6, "linestyle": ":", "zorder": 1}
         axes.axvline(at, **line, label=words)
         named.add(number)
     for number, place in stops.items():
         axes.axhline(place, color="0.6", linewidth=0.6, linestyle="--", zorder=0, label="stop")
         if several:
-            beside: Any = {"transform": axes.get_yaxis_transform(), "va": "center", "fontsize": "small"}
+            beside: Look = {"transform": axes.get_yaxis_transform(), "va": "center", "fontsize": "small"}
             axes.text(1.005, place, f"stop {number}", **beside)
     return axes
 
@@ -89,7 +90,7 @@ def strobes(
     settled: ArrayLike,
     *,
     pale: str = "pale: not settled",
-    **look: Any,
+    **look: Look,
 ) -> Axes:
     """Draw the strobe points of an orbit diagram; they are pale where the motion did not settle.
 
@@ -131,7 +132,7 @@ def branch(
     upwards: ArrayLike,
     stable: ArrayLike,
     admissible: ArrayLike,
-    **look: Any,
+    **look: Look,
 ) -> Axes:
     """Draw a branch of orbits in its order: stable, unstable, and pale dots for what is no motion.
 
@@ -144,7 +145,7 @@ def branch(
     stable, admissible : array_like of bool, shape (n_orbits,)
         Whether an orbit is stable, and whether it touches the stop at its impacts only.
     **look
-        Properties of the lines.
+        Properties of the lines; ``label`` begins the label of each kind.
 
     Returns
     -------
@@ -152,10 +153,11 @@ def branch(
         The axes, with a label for each kind of orbit.
     """
     axes, x, y = _on(axes), np.asarray(sideways), np.asarray(upwards)
+    name = f"{label}: " if (label := look.pop("label", "")) else ""
     kinds = np.where(np.asarray(admissible), np.where(np.asarray(stable), 0, 1), 2)
     runs = np.split(np.arange(kinds.size), np.flatnonzero(np.diff(kinds)) + 1)
     for run in sorted(runs, key=lambda run: int(kinds[run[0]])):  # in the order of the legend
         part = slice(run[0], run[-1] + 2)  # on to the next orbit: the line has no gap
         words, line = list(BRANCHES.items())[kinds[run[0]]]
-        axes.plot(x[part], y[part], **{"color": "C0", **look, **line, "label": words})
+        axes.plot(x[part], y[part], **{"color": "C0", **look, **line, "label": name + words})
     return axes

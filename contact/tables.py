@@ -1,10 +1,15 @@
 """Columns of numbers as a CSV file, and as a table of pandas."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
 
 
 def write_csv(path: str | Path, columns: Mapping[str, np.ndarray], units: Mapping[str, str]) -> None:
@@ -15,13 +20,13 @@ def write_csv(path: str | Path, columns: Mapping[str, np.ndarray], units: Mappin
     Path(path).write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
-def dataframe(columns: Mapping[str, np.ndarray], units: Mapping[str, str]) -> Any:
+def dataframe(columns: Mapping[str, np.ndarray], units: Mapping[str, str]) -> DataFrame:
     """Return a pandas.DataFrame, whose ``attrs["units"]`` keeps the units.
 
     ImportError is raised if pandas is not installed.
     """
     try:
-        from pandas import DataFrame
+        from pandas import DataFrame  # slow to import, and an extra
     except ImportError as error:
         words = "a DataFrame needs the package pandas: python -m pip install pandas"
         raise ImportError(f"{words}; to_csv writes the same columns without it") from error

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from dataclasses import field, fields
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from beam.parameters import require, shown
+from beam.parameters import InvalidValue, require, shown
 from beam.record import record
 from contact import plots
 from contact.impacts import Impacts
@@ -18,6 +18,7 @@ from contact.tables import dataframe, write_csv
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from pandas import DataFrame
 
 SAMPLES = {"time": "s", "tip": "m", "tip_velocity": "m/s"}
 """Columns of a table of samples, and their units."""
@@ -93,7 +94,7 @@ class Trajectory:
 
     def _repr_html_(self) -> str:
         """The same words, and the first impacts in rows."""
-        return f"<p>{self!r}</p>{self.impacts._repr_html_()}"
+        return f"<p>{self!r}</p><p>Impacts</p>{self.impacts._repr_html_()}"
 
     @property
     def tip(self) -> np.ndarray:
@@ -112,10 +113,10 @@ class Trajectory:
         require(self.time.size > 0, "trajectory", words)
         return {name: getattr(self, name) for name in SAMPLES}
 
-    def plot(self, axes: Axes | None = None, **look: Any) -> Axes:
+    def plot(self, axes: Axes | None = None, **look: plots.Look) -> Axes:
         """Draw the tip [mm] against time [s], with the stops at the tip and the impacts on them.
 
-        It draws on `axes` of matplotlib, or on those of a new figure, and returns them; `look` are properties
+        It draws on `axes` of matplotlib, or makes a figure, and returns the axes; `look` are properties
         of the line.  ValueError is raised for a trajectory without samples.
         """
         samples, felt = self._columns, self.impacts.kind != GRAZE
@@ -133,7 +134,7 @@ class Trajectory:
         """
         write_csv(path, self._columns, SAMPLES)
 
-    def to_dataframe(self) -> Any:
+    def to_dataframe(self) -> DataFrame:
         """Return the columns of `to_csv` as a pandas.DataFrame; ImportError if pandas is not installed."""
         return dataframe(self._columns, SAMPLES)
 
@@ -156,9 +157,13 @@ class Trajectory:
         The file does not keep the oscillator, since a law may hold functions.  ValueError is raised if
         `oscillator` has other numbers than the one that moved, or if the file holds no such motion.
         """
-        with np.load(path, allow_pickle=False) as file:
+        words = "it must be a motion that Trajectory.save has written"
+        try:
+            opened = np.load(path, allow_pickle=False)
+        except ValueError as error:  # no file of numpy
+            raise InvalidValue("path", f"is {shown(str(path))}, {words}") from error
+        with opened as file:
             known = {"numbers", *_ARRAYS, *(f"impacts_{x}" for x in _COLUMNS), *(f"end_{x}" for x in _STATE)}
-            words = "it must be a motion that Trajectory.save has written"
             require(set(file.files) == known, "path", f"is {shown(str(path))}, {words}")
             same = np.array_equal(file["numbers"], _fingerprint(oscillator))
             require(same, "oscillator", f"has other numbers than the one that moved in {shown(str(path))}")

@@ -60,15 +60,15 @@ LINES = ("-", "--", "-.", ":", (0, (5, 1)), (0, (3, 1, 1, 1)), (0, (1, 2)), (0, 
 NOTE = 7.0
 """Size of ticks, legends and notes inside a panel [pt]."""
 
-UP: dict[str, Any] = {"color": BLUE, "markersize": 1.3, "zorder": 3}
-DOWN: dict[str, Any] = {"color": VERMILION, "markerfacecolor": "none", "markersize": 2.6, "zorder": 2}
-"""Strobe points while the amplitude is raised and lowered."""
-
 EXCESS, HYSTERESIS = "excess $F/F_g - 1$", "hysteresis $1 - F_m/F_g$"
 """Names of the two quantities that most axes show."""
 
 Style = dict[str, Any]
 Array = NDArray[np.float64]
+
+UP: Style = {"color": BLUE, "markersize": 1.3, "zorder": 3}
+DOWN: Style = {"color": VERMILION, "markerfacecolor": "none", "markersize": 2.6, "zorder": 2}
+"""Strobe points while the amplitude is raised and lowered."""
 
 GUIDE: Style = {"color": "0.6", "linewidth": 0.6, "linestyle": "--", "zorder": 0}
 LETTER: Style = {"color": "0.25", "linewidth": 0.9, "linestyle": (0, (1, 1)), "zorder": 1}

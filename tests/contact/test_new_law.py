@@ -109,7 +109,7 @@ def test_what_serves_a_single_law_stands_in_its_file_alone():
     for name in (shared + "orbits/observation/amplitude_scan engine/recorder sensitivity/change").split():
         assert words_of(ROOT / "contact" / f"{name}.py") & of_one == set()
     files = {path.stem for path in (ROOT / "contact").rglob("*.py") if "wait" in words_of(path)}
-    assert files == {"trajectory", "passage", "start", "delayed"} and laws
+    assert files == {"state", "passage", "start", "delayed"} and laws
 
 
 @pytest.mark.parametrize("form", ["short", *slow("whole")])

@@ -110,7 +110,9 @@ def entered(family: NewtonFamily, near: PeriodicOrbit | None = None) -> Periodic
     for speed in [near.speed] if near is not None else [part * unit for part in STARTS]:
         with suppress(ContactError):
             return family.at_speed(speed, near)
-    raise BranchEnded(detail=f"no orbit of period {family.m} was found to start from")
+    raise BranchEnded(
+        detail=f"no orbit of period {family.m} was found to start from; settle a motion, and give its orbit"
+    )
 
 
 def whole_branch(

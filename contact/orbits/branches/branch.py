@@ -8,9 +8,10 @@ number of touches.  Such a neighbour exists under a law whose force is continuou
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -31,9 +32,8 @@ SMALLEST, MOST_STEPS = 1e-9, 5000
 ACROSS = tuple(10.0**-k for k in range(9, 2, -1))
 """Steps tried from a grazing orbit to the first one with another number of touches."""
 
-FEW, DEPTHS, SLOW = 4, 3.0, 1e-3
-"""Events that are printed; end of a picture above grazing, in depths of the branch below it; its slowest
-touch over the fastest one."""
+FEW, WIDE, SLOW = 4, 80, 1e-3
+"""Events that are printed, and characters of a reason; slowest touch of a picture over the fastest one."""
 
 SHORTER = "the orbit becomes one of a shorter period, which runs through it several times"
 
@@ -64,37 +64,52 @@ class Branch:
     parameters: tuple[float, ...] = ()
 
     def __repr__(self) -> str:
-        """Number of its orbits, and the first events."""
-        good = sum(orbit.stable and orbit.admissible for orbit in self.orbits)
+        """Number and kind of its orbits, the first events, and why it ends."""
+        first, admissible = self.orbits[0], [orbit for orbit in self.orbits if orbit.admissible]
+        stable = sum(orbit.stable for orbit in admissible)
         named = [f"{event.kind} at {event.parameter:#.3g}" for event in self.events[:FEW]]
         more = [f"{len(self.events) - FEW} events more"] if len(self.events) > FEW else []
-        words = f"Branch({len(self.orbits)} orbits, {good} stable and admissible"
-        return f"{words}\n    {', '.join([*named, *more]) or 'no event'})"
+        return (
+            f"Branch({len(self.orbits)} orbits p{first.m}, {len(admissible)} admissible, {stable} of them stable\n"
+            f"    {', '.join([*named, *more]) or 'no event'}\n"
+            f"    ended_low={self.ended_low[:WIDE]}\n    ended_high={self.ended_high[:WIDE]})"
+        )
 
-    def plot(self, axes: Axes | None = None, **look: Any) -> Axes:
+    def plot(self, axes: Axes | None = None, **look: plots.Look) -> Axes:
         """Draw the approach speed [mm/s] of the orbits against the excess, or the parameter of a path.
 
-        Stable orbits are solid and unstable ones dashed; an orbit that is not admissible is a pale dotted
-        line, as it would touch a second time.  Dots name the events.  The picture of a branch over the excess
-        ends at three times its depth below grazing, and at slow touches; `set_xlim` and `set_ylim` show more.
-        It draws on `axes` of matplotlib, or on those of a new figure, and returns them; `look` are properties
-        of the lines.
+        Stable orbits are solid and unstable ones dashed.  Pale dots are orbits that are not admissible, as
+        they would touch a second time.  Marks name the events.  The picture of a branch over the excess ends
+        at twice the distance of its farthest event from grazing, and at slow touches; `set_xlim` and
+        `set_ylim` show more.  It draws on `axes` of matplotlib, or makes a figure, and returns the axes;
+        `look` are properties of the lines.
         """
         places = self.parameters or [orbit.excess for orbit in self.orbits]
-        stable, admissible, speeds = zip(
-            *((orbit.stable, orbit.admissible, 1e3 * orbit.speed) for orbit in self.orbits), strict=True
-        )
-        axes = plots.branch(axes, places, speeds, stable, admissible, **look)
-        for event in self.events:
-            place = event.parameter or 0.0, 1e3 * event.orbit.speed
-            axes.plot(*place, "o", color="black", markersize=3.5)
-            axes.annotate(event.kind, place, (4.0, -8.0), textcoords="offset points", annotation_clip=True)
-        axes.set(yscale="log", ylabel="approach speed (mm/s)")
-        axes.set_xlabel("parameter of the path" if self.parameters else "excess $F/F_g - 1$")
-        if not self.parameters and min(places) < 0.0:
-            far = -DEPTHS * min(places)
-            fastest = max(speed for place, speed in zip(places, speeds, strict=True) if place <= far)
-            axes.set(xlim=(1.1 * min(places), far), ylim=(SLOW * fastest, 1.5 * fastest))
+        flags = [(orbit.stable, orbit.admissible) for orbit in self.orbits]
+        line = np.column_stack([places, [math.log(orbit.speed) for orbit in self.orbits]])
+        marks = [
+            (event.kind, np.array([event.parameter, math.log(event.orbit.speed)])) for event in self.events
+        ]
+        for _, mark in marks:  # between the two orbits where it makes the least detour
+            to, on = (
+                np.linalg.norm(difference, axis=1) for difference in (line - mark, np.diff(line, axis=0))
+            )
+            after = 1 + int(np.argmin(to[:-1] + to[1:] - on)) if len(on) else 0
+            line, flags = np.insert(line, after, mark, axis=0), [*flags[:after], flags[after], *flags[after:]]
+        empty = axes is None or not axes.has_data()
+        axes = plots.branch(axes, line[:, 0], 1e3 * np.exp(line[:, 1]), *zip(*flags, strict=True), **look)
+        for kind, (place, log_speed) in marks:
+            at = place, 1e3 * math.exp(log_speed)
+            axes.plot(*at, "o", color="black", markersize=3.5)
+            axes.annotate(kind, at, (4.0, -8.0), textcoords="offset points", annotation_clip=True)
+        if empty:
+            axes.set(yscale="log", ylabel="approach speed (mm/s)", xlabel="excess $F/F_g - 1$")
+            if self.parameters:
+                axes.set_xlabel("parameter of the path")
+            elif marks:
+                far = 2.0 * max(abs(place) for _, (place, _) in marks)
+                fastest = 1e3 * math.exp(max(line[line[:, 0] <= far, 1]))
+                axes.set(xlim=(min(1.1 * min(places), 0.0), far), ylim=(SLOW * fastest, 1.5 * fastest))
         return axes
 
     def of_kind(self, kind: str) -> list[PeriodicOrbit]:

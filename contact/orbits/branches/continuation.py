@@ -71,8 +71,10 @@ def follow(
     >>> stop, drive = Stop(gap=11.9e-3, law=law), HarmonicDrive(frequency=21.5)
     >>> family = Shooting(oscillator=ImpactOscillator(model=spring, stop=stop, drive=drive), m=4)
     >>> follow(family, family.at_speed(0.6), low=0.2, high=2.0)
-    Branch(26 orbits, 9 stable and admissible
-        fold at -0.00730, grazing at 0.0121)
+    Branch(26 orbits p4, 17 admissible, 9 of them stable
+        fold at -0.00730, grazing at 0.0121
+        ended_low=range
+        ended_high=range)
     """
     require_family(family)
     if start is not None:
@@ -82,7 +84,8 @@ def follow(
     slowest = curve.slowest if low is None else require_within("low", low, "m/s")
     fastest = curve.fastest if high is None else require_within("high", high, "m/s")
     speed = curve.like.speed
-    words = f"low and high are {slowest:g} and {fastest:g} m/s; they must enclose the start, {speed:g} m/s"
+    words = f"low and high are {slowest} and {fastest} m/s; they must enclose the start, {speed:g} m/s"
+    words += ", which was looked for: give one of family.at_speed" if start is None else ""
     require(0 < slowest < speed < fastest, words)
     curve = replace(curve, slowest=slowest, fastest=fastest)
     branch = branch_of(curve, curve.start(), step, step)[0]

@@ -121,7 +121,7 @@ class NewtonFamily:
 
 def require_family(family: NewtonFamily, near: object = None) -> None:
     """Refuse what is no family to follow, and a `near` that is neither an orbit near it nor None."""
-    require_kind("family", family, NewtonFamily, "a Shooting family")
+    require_kind("family", family, NewtonFamily, "a Shooting family, such as Shooting(oscillator=..., m=4)")
     if near is not None:
         require_orbit(family, "near", near)
 

@@ -89,7 +89,8 @@ class SingleImpactOrbit(TouchOrbit):
     phase : float
         Drive time of the first touch [s].
     displacement, velocity : ndarray, shape (n_modes,)
-        Deviations from the steady motion just before the first touch [m kg^0.5], and their rates.
+        Deviations from the steady motion just before the first touch [kg^(1/2) m], and their rates
+        [kg^(1/2) m/s].
     kick : Kick
         The effect of the collision on the modes.
     """

@@ -143,8 +143,8 @@ class PeriodicOrbit(TouchOrbit):
     phase : float
         Drive time of the first touch [s].
     displacement, velocity : ndarray, shape (n_modes,)
-        Deviations of the modes from the steady motion just before the first touch [m kg^0.5] and
-        [m kg^0.5/s].
+        Deviations of the modes from the steady motion just before the first touch [kg^(1/2) m], and their
+        rates [kg^(1/2) m/s].
     record : Touches
         The touches of the orbit (``contact.touch.passage``), at times since the first one.
     tangent : ndarray, shape (2 n_modes, 2 n_modes)

@@ -8,7 +8,7 @@ spring stays on its orbit until that orbit ends.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Generic, TypeVar
 
 import numpy as np
 
@@ -59,10 +59,10 @@ class OrbitDiagram(Generic[S]):
     failures: tuple[str, ...]
     end: S
 
-    def plot(self, axes: Axes | None = None, **look: Any) -> Axes:
+    def plot(self, axes: Axes | None = None, **look: plots.Look) -> Axes:
         """Draw the observed quantity at the strobes against the excess; pale where no orbit was reached.
 
-        It draws on `axes` of matplotlib, or on those of a new figure, and returns them; `look` are properties
+        It draws on `axes` of matplotlib, or makes a figure, and returns the axes; `look` are properties
         of the points.
         """
         axes = plots.strobes(axes, self.excess, self.points, self.m > 0, **look)
