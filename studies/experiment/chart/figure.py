@@ -26,7 +26,7 @@ from studies.experiment.chart.settled import (
     Settlement,
     Starts,
 )
-from studies.experiment.period_colours import key, key_of_periods, paint, paint_periods, write_numbers
+from studies.experiment.period_colours import key, key_of_periods, paint
 from studies.physics.descriptions import TITLES
 from studies.shell import plotting
 from studies.shell.digits import written
@@ -56,13 +56,12 @@ def draw(
     """The figure."""
     figure, axes = plotting.new_figure(2, 2, width=plotting.PAGE, height=0.150, sharex=True, sharey=True)
     x, y = plane.frequencies(), sheared(plane.rising_excesses())
-    names = ["", *CLASSES.values()]
+    names, struck = ["", *CLASSES.values()], np.where(cells["impacts"] > 0, cells["m"], 0)
+    classes = np.searchsorted(list(CLASSES), cells["impacts"], side="right")
     for k, way in enumerate(("upward scan", "downward scan")):
-        period, impacts = cells["m"][k], cells["impacts"][k]
-        classes = np.searchsorted(list(CLASSES), impacts, side="right")
-        paint_periods(axes[0, k], x, y, period, impacts)
-        paint(axes[1, k], x, y, period, classes, IMPACTS)
-        write_numbers(axes[1, k], np.where(period > 0, classes, 0), x, y, names)
+        period = cells["m"][k]
+        paint(axes[0, k], x, y, period, struck[k])
+        paint(axes[1, k], x, y, period, classes[k], colours=IMPACTS, words=names.__getitem__)
         for axis in axes[:, k]:
             _draw_theory(axis, edges, folds)
             axis.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
@@ -72,10 +71,9 @@ def draw(
     for axis in axes[:, 0]:
         axis.set_yticks(sheared(TICKS), [written(t) for t in TICKS])
         plotting.label(axis.yaxis, plotting.EXCESS)
-    key_of_periods(axes[0, 1], cells["m"], cells["impacts"])
-    hit, failed = (cells["impacts"] > 0) & (cells["m"] > 0), bool(np.any(cells["m"] < 0))
-    seen = set(np.searchsorted(list(CLASSES), cells["impacts"][hit], side="right").tolist())
-    key(axes[1, 1], "impacts", {names[k]: IMPACTS[k] for k in sorted(seen)}, failed)
+    key_of_periods(axes[0, 1], cells["m"], struck)
+    seen, failed = np.unique(classes[struck > 0]).tolist(), bool(np.any(cells["m"] < 0))
+    key(axes[1, 1], "impacts", {names[k]: IMPACTS[k] for k in seen}, failed)
     plotting.legend_below(figure, axes.flat, 4)
     return figure
 

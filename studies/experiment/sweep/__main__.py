@@ -18,22 +18,20 @@ KEY is any number of a scene (--dump-scene lists them), or frequency [Hz], exces
 Every finished column is kept (``studies.shell.sweep``): the same command goes on; --fresh begins anew.
 
 Run:     python -m studies sweep [--over KEY=FROM:TO:N] [--over KEY=FROM:TO:N] [--start up]
-Writes:  sweep.csv (one row a cell), sweep.png; for two keys sweep.npz (arrays on the grid)
+Writes:  sweep.csv (one row a cell), sweep.npz (arrays on the grid), sweep.png
 """
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import fields, make_dataclass
+from collections.abc import Iterable, Mapping
 from functools import partial
-from itertools import product
+from itertools import chain
 from typing import Annotated, Any, Literal
 
 import numpy as np
 
-from studies import letter
-from studies.experiment.sweep.model import ALL, DRIVE, NUMBERS, REST, Axis, Cell, Plan, axis_of, column_of
+from studies.experiment.sweep.model import ALL, NUMBERS, REST, Cell, Plan, Values, column_of, plan_of
 from studies.shell.digits import written
 from studies.shell.options import HERTZ, Within
-from studies.shell.scene import Scene, harmonic, own_frequency
+from studies.shell.scene import Scene
 from studies.shell.study import Run, study
 from studies.shell.sweep import note_failures
 from studies.shell.sweep import sweep as stored
@@ -43,21 +41,12 @@ CAPTION = (
     "energy lost at the stops in a drive period. Grey cells have none of them."
 )
 
+HOLDS = (
+    "The columns of sweep.csv, shape (n of the second key or 1, n of the first); m is -1 in a failed cell."
+)
+
 MOST_SHOWN = 100  # cells on the terminal; all are in the table
 STARTS = {"rest": "from the spring at rest", "up": "from the cell below it", "down": "from the cell above it"}
-
-
-def plan_of(scene: Scene, options: Mapping[str, Any]) -> Plan:
-    """The sweep of the command; refuses one that cannot be computed."""
-    harmonic(scene)
-    axes = tuple(axis_of(text) for text in options["over"])
-    swept = {axis.name for axis in axes}
-    fixed = {name: options[name] for name in DRIVE if options[name] is not None}
-    if not {"excess", "amplitude"} & {*fixed, *swept}:
-        fixed["excess"] = letter.TIME_TRACE_EXCESS
-    if "frequency" not in {*fixed, *swept}:
-        fixed["frequency"] = own_frequency(scene, letter.TIME_TRACE_HZ)
-    return Plan(axes=axes, start=options["start"], fixed=fixed)
 
 
 def conditions(scene: Scene, options: Mapping[str, Any]) -> tuple[list[float], float]:
@@ -86,26 +75,18 @@ def sweep(
     given = {"over": over, "start": start, "frequency": frequency, "excess": excess, "amplitude": amplitude}
     plan = plan_of(scene, given)
     scene = run.choose_modes(*plan.with_modes(scene))
-    drive = ", ".join(f"{name} {in_units(name, value)}" for name, value in plan.fixed.items())
+    drive = in_words(plan.fixed)
     run.say(f"{drive}{'; ' * bool(drive)}each motion starts {STARTS[start]}")
     settings = {"over": over, "start": start, "fixed": plan.fixed, "scene": scene.values()}
     name = "-".join([start, *(f"{axis.name}-{len(axis.values)}" for axis in plan.axes)])
-    work = partial(column_of, scene=scene, start=start)
+    work = partial(column_of, scene=scene, start=start, fixed=plan.fixed)
     columns = stored(run, name, settings, plan.columns(), work, fresh=fresh)
-    cells = plan.on_grid(columns)
-    kind = kind_of(plan.axes)
-    rows = rows_of(plan.axes, cells, kind)
-    shown = [entry.name for entry in fields(kind) if entry.name not in ("carried", "reason")]
-    run.table(
-        "sweep", rows, "The cells of the sweep.", of=kind, show=shown if len(rows) <= MOST_SHOWN else ()
-    )
-    note_failures(run, failures(plan.axes, rows))
-    if len(plan.axes) == 2:
-        holds = (
-            "The columns of sweep.csv, shape (n of the second key, n of the first); m -1 in a failed cell."
-        )
-        places = {axis.name: axis.values for axis in plan.axes if axis.name not in DRIVE}
-        run.arrays("sweep", holds, **places, **cells)
+    shape = (-1, len(plan.axes[0].values))
+    cells = {each: np.concatenate([one[each] for one in columns]).reshape(shape) for each in NUMBERS}
+    rows = rows_of(chain.from_iterable(plan.columns()), cells)
+    run.table("sweep", rows, "The cells of the sweep.", of=Cell, show=None if len(rows) <= MOST_SHOWN else ())
+    note_failures(run, ((in_words(row.swept), row.reason) for row in rows if row.reason))
+    run.arrays("sweep", HOLDS, **{axis.name: axis.values for axis in plan.axes} | cells)
     from studies.experiment.sweep.figure import draw  # matplotlib is slow to import
 
     run.figure("sweep", draw(plan.axes, cells, drive), CAPTION)
@@ -113,41 +94,18 @@ def sweep(
     return {"rows": rows, "modes": scene.kept_modes, "start": start, **plan.fixed}
 
 
-def in_units(name: str, value: float) -> str:
-    """A value with the unit of its name."""
-    unit = ALL[name].unit
-    return f"{value:.6g} {unit if unit != '1' else ''}".rstrip()
+def in_words(values: Values) -> str:
+    """Names, values and units."""
+    return ", ".join(f"{name} {v:.6g} {ALL[name].unit}".removesuffix(" 1") for name, v in values.items())
 
 
-def kind_of(axes: Sequence[Axis]) -> type[Cell]:
-    """The cells with a column for each key of the scene that is swept, before the others."""
-    keys = {axis.name: axis.unit for axis in axes if axis.name not in DRIVE}
-    words = {name: f"{name} [{unit}]" if unit not in ("", "1") else name for name, unit in keys.items()}
-    entries = [(name.replace(".", "_"), Annotated[float, text]) for name, text in words.items()]
-    swept = make_dataclass("Swept", entries, frozen=True, kw_only=True)
-    return make_dataclass("Cell", [], bases=(Cell, swept), frozen=True, kw_only=True)
-
-
-def rows_of(axes: Sequence[Axis], cells: Mapping[str, np.ndarray], kind: type[Cell]) -> list[Cell]:
+def rows_of(swept: Iterable[Values], cells: Mapping[str, np.ndarray]) -> list[Cell]:
     """The cells in the order of the grid, the first axis fastest."""
-    rows, keys = list[Cell](), [axis.name.replace(".", "_") for axis in axes]
-    known = {entry.name for entry in fields(kind)}
-    values = product(*(axis.values for axis in reversed(axes)))
-    for place, swept in enumerate(values):
-        cell = {name: numbers.flat[place].item() for name, numbers in cells.items()}
-        at = dict(zip(keys, reversed(swept), strict=True))
-        failed = {"m": None, "impacts": None} if cell["reason"] else {}
-        rows.append(kind(**cell | failed | {name: at[name] for name in at.keys() & known}))
+    columns, rows = [values.ravel().tolist() for values in cells.values()], list[Cell]()
+    for at, *row in zip(swept, *columns, strict=True):
+        numbers = dict(zip(cells, row, strict=True))
+        rows.append(Cell(swept=at, **numbers | ({"m": None, "impacts": None} if numbers["reason"] else {})))
     return rows
-
-
-def failures(axes: Sequence[Axis], rows: Sequence[Cell]) -> Iterator[tuple[str, str]]:
-    """Where cells failed, and why."""
-    places = product(*(axis.values for axis in reversed(axes)))
-    for row, place in zip(rows, places, strict=True):
-        if row.reason:
-            where = zip(axes, reversed(place), strict=True)
-            yield ", ".join(f"{axis.name} {in_units(axis.name, value)}" for axis, value in where), row.reason
 
 
 def findings(run: Run, plan: Plan, cells: Mapping[str, np.ndarray]) -> None:
@@ -156,14 +114,13 @@ def findings(run: Run, plan: Plan, cells: Mapping[str, np.ndarray]) -> None:
     if done.any():
         share = written(100.0 * float(np.mean(cells["m"][done] > 0)), 3)
         run.finding(f"The motion has a period in {share} % of the cells.")
-        if np.any(cells["peak_force"] > 0.0):
-            most = written(float(np.nanmax(cells["peak_force"])), 3)
-            run.finding(f"The largest contact force of the sweep is {most} N.")
-    later = np.s_[:, :-1] if plan.start == "down" else np.s_[:, 1:]
-    anew = np.sum(done[later] & ~cells["carried"][later])
-    if plan.start != REST and anew:
-        run.say(f"cells that begin from rest, as the motion before cannot start there: {anew}")
-    for axis, name in enumerate(one.name for one in plan.axes):
-        along = [np.moveaxis(cells[key], 1 - axis, 0) for key in NUMBERS if key not in ("carried", "reason")]
-        if len(along[0]) > 1 and all(np.all((v == v[:1]) | (v != v) & (v[:1] != v[:1])) for v in along):
-            run.warn(f"{name} changes no number of this sweep: the scene may make no use of it")
+    if np.any(cells["peak_force"] > 0.0):
+        most = written(float(np.nanmax(cells["peak_force"])), 3)
+        run.finding(f"The largest contact force of the sweep is {most} N.")
+    if plan.start != REST:
+        run.say(f"cells that begin from rest: {np.sum(done & ~cells['carried'])}")
+    numbers = [values for name, values in cells.items() if name not in ("carried", "reason")]
+    for number, axis in enumerate(plan.axes):
+        first = [np.broadcast_to(values.take([0], 1 - number), values.shape) for values in numbers]
+        if done.any() and all(map(partial(np.array_equal, equal_nan=True), first, numbers)):
+            run.warn(f"{axis.name} changes no number of this sweep: the scene may make no use of it")
