@@ -39,10 +39,7 @@ def paint(
     words: Callable[[int], str] = "p$_{{{}}}$".format,
     least: float = LEAST_WIDTH,
 ) -> None:
-    """A plane in `colours` by `values`, shape (n_x, n_y), with the `words` of each large region's value.
-
-    Words stand where a region is farthest from its border. Where the period is 0 there is none; -1: failed.
-    """
+    """A plane in `colours` by `values`, shape (n_x, n_y), with the `words` of the value in large regions."""
     image = colours_of(period, values, colours)
     axis.pcolormesh(x, y, image.swapaxes(0, 1), shading="nearest", rasterized=True)
     outline, sides = [withStroke(linewidth=1.4, foreground="white")], [1.0 / count for count in period.shape]
@@ -58,7 +55,7 @@ def paint(
 
 
 def colours_of(period: np.ndarray, values: np.ndarray, colours: Sequence[str] = PERIODS) -> np.ndarray:
-    """The colours (red, green, blue) by `values`, the last one for all that are larger."""
+    """The colours by `values`, the last one for all larger ones; a period of 0 is none, -1 a failure."""
     table = np.array([to_rgb(one) for one in (*colours, NONE, FAILED)])
     places = np.minimum(values, len(colours) - 1)
     found: np.ndarray = table[np.where(period < 0, -1, np.where(period == 0, -2, places))]
@@ -67,8 +64,7 @@ def colours_of(period: np.ndarray, values: np.ndarray, colours: Sequence[str] = 
 
 def key_of_periods(on: Axes | Figure, period: np.ndarray, struck: np.ndarray, **place: Any) -> None:
     """The colours of the periods that occur; `struck` is 0 without impacts, otherwise the period."""
-    seen = set(np.minimum(struck[struck > 0], LAST).tolist())
-    colours = {NAMES[m]: PERIODS[m] for m in sorted(seen)}
+    colours = {NAMES[m]: PERIODS[m] for m in np.unique(np.minimum(struck[struck > 0], LAST)).tolist()}
     key(on, "period m", colours, bool(np.any(period < 0)), **place)
 
 

@@ -1,7 +1,6 @@
 """The chart as a figure: upward scan left, downward scan right; period above, impacts in a period below.
 
-Colours and numbers come from ``period_colours``.  The upright axis is that of the grid
-(``model.sheared``).
+Colours and numbers come from ``period_colours``, the upright axis from ``model.sheared``.
 
 Figures of the settled motions: strobe points and exponents of a scan, and basins on the strobe plane.
 """
@@ -16,16 +15,8 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from contact import Band, plots
+from studies.experiment.chart import settled
 from studies.experiment.chart.model import Fold, Plane, sheared
-from studies.experiment.chart.settled import (
-    CHAOTIC,
-    NOT_SETTLED,
-    PERIODIC,
-    UNDECIDED,
-    WITHOUT,
-    Settlement,
-    Starts,
-)
 from studies.experiment.period_colours import key, key_of_periods, paint
 from studies.physics.descriptions import TITLES
 from studies.shell import plotting
@@ -99,18 +90,18 @@ SCAN = (
 )
 BASINS = "Where starts on the strobe plane of Eq. (1) lead below grazing: to p_m, or to no impacts at all."
 LOOKS = {
-    WITHOUT: ("v", plotting.SKY),
-    PERIODIC: ("o", plotting.BLUE),
-    CHAOTIC: ("s", plotting.VERMILION),
-    NOT_SETTLED: ("^", plotting.ORANGE),
-    UNDECIDED: ("x", "0.5"),
+    settled.WITHOUT: ("v", plotting.SKY),
+    settled.PERIODIC: ("o", plotting.BLUE),
+    settled.CHAOTIC: ("s", plotting.VERMILION),
+    settled.NOT_SETTLED: ("^", plotting.ORANGE),
+    settled.UNDECIDED: ("x", "0.5"),
 }
 """Marker and colour of a kind."""
 
 
 @plotting.in_house_style
 def draw_scan(
-    rows: Sequence[Settlement], strobes: Sequence[np.ndarray], frequency: float, quantity: str
+    rows: Sequence[settled.Settlement], strobes: Sequence[np.ndarray], frequency: float, quantity: str
 ) -> Figure:
     """Strobe points and exponents against the excess, a column for each model."""
     figure, axes = plotting.new_figure(2, 2, width=plotting.PAGE, height=0.112, sharex="col")
@@ -119,9 +110,9 @@ def draw_scan(
         for way, look in (("up", plotting.UP), ("down", plotting.DOWN)):
             mine = [k for k, row in enumerate(rows) if (row.model, row.direction) == (name, way)]
             excess, points = np.array([rows[k].excess for k in mine]), np.array([strobes[k] for k in mine])
-            settled = np.array([rows[k].m > 0 for k in mine])
+            periodic = np.array([rows[k].m > 0 for k in mine])
             words = {"label": f"{way}ward scan", "pale": "pale: not periodic"}
-            plots.strobes(upper, 1e2 * excess, 1e3 * points, settled, **look, **words)
+            plots.strobes(upper, 1e2 * excess, 1e3 * points, periodic, **look, **words)
         for kind, (marker, colour) in LOOKS.items():
             alike = [(1e2 * r.excess, r.lyapunov_map) for r in rows if (r.model, r.kind) == (name, kind)]
             mark: plotting.Style = {"markersize": 3.4, "mfc": "none", "markeredgecolor": colour}
@@ -140,7 +131,7 @@ def draw_scan(
 
 
 @plotting.in_house_style
-def draw_basins(plane: Starts, leads: np.ndarray, frequency: float) -> Figure:
+def draw_basins(plane: settled.Starts, leads: np.ndarray, frequency: float) -> Figure:
     """The strobe plane, coloured by where its points lead."""
     figure, axis = plotting.new_figure(height=0.088)
     oscillator, m = plane.strobed.oscillator, plane.m

@@ -1,9 +1,8 @@
 """The numbers of a sweep: lines over one axis with the periods as colours, or maps over two."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
-from matplotlib.axis import Axis as Ruler
 from matplotlib.figure import Figure
 
 from studies.experiment.period_colours import FAILED, colours_of, key_of_periods, paint
@@ -29,10 +28,8 @@ def draw(axes: Sequence[Axis], cells: Mapping[str, np.ndarray], title: str) -> F
     figure, panels = plotting.new_figure(2, 2, **size, sharex=True, sharey=bool(others))
     period, impacts = cells["m"], cells["impacts"]
     struck = np.where(impacts > 0, period, 0)
-    shown = {
-        **cells,
-        "impacts": np.where(period < 0, np.nan, impacts / np.where(period > 0, period, WITHOUT)),
-    }
+    rate = impacts / np.where(period > 0, period, WITHOUT)
+    shown = {**cells, "impacts": np.where(period < 0, np.nan, rate)}
     for number, (panel, (name, (what, unit))) in enumerate(zip(panels.flat, PANELS.items(), strict=True)):
         is_period = bool(others) and name == "impacts"
         plotting.panel(panel, number, "period" if is_period else what)
@@ -51,17 +48,12 @@ def draw(axes: Sequence[Axis], cells: Mapping[str, np.ndarray], title: str) -> F
             panel.vlines(x[period[0] < 0], 0.0, 1.0, FAILED, transform=panel.get_xaxis_transform())
             plotting.label(panel.yaxis, what.partition(" per ")[0], unit)
             panel.set_ylim(bottom=0.0)
-    for panel in panels[1]:
-        _name(panel.xaxis, panel.set_xscale, axes[0])
-    for panel in panels[:, 0] if others else ():
-        _name(panel.yaxis, panel.set_yscale, axes[1])
+    for way, axis, row in zip("xy", axes, (panels[1], panels[:, 0]), strict=False):
+        known, scale = ALL[axis.name], "log" if axis.log else "linear"
+        for panel in row:
+            panel.set(**{f"{way}scale": scale})
+            ruler, words = getattr(panel, f"{way}axis"), known.meaning if axis.name in DRIVE else axis.name
+            plotting.label(ruler, words, known.unit)
     key_of_periods(figure, period, struck, loc="outside lower center", ncols=8)
     figure.suptitle(title, fontsize=plotting.STYLE["axes.titlesize"])
     return figure
-
-
-def _name(ruler: Ruler, set_scale: Callable[[str], None], axis: Axis) -> None:
-    """Name what is swept, and space it as its values."""
-    known = ALL[axis.name]
-    plotting.label(ruler, known.meaning if axis.name in DRIVE else axis.name, known.unit)
-    set_scale("log" if axis.log else "linear")

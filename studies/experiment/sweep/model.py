@@ -23,16 +23,8 @@ from studies import letter
 from studies.experiment.period_map import SimulatedMap
 from studies.physics.least_model import ALWAYS, least_modes
 from studies.shell.options import MOST_CELLS
-from studies.shell.scene import (
-    Scene,
-    SceneError,
-    beam_at,
-    harmonic,
-    model_of,
-    own_frequency,
-    require_drive_below,
-)
-from studies.shell.scene.key import ASSUMED, Key, shown
+from studies.shell.scene import Scene, beam_at, harmonic, model_of, own_frequency, require_drive_below
+from studies.shell.scene.key import ASSUMED, Key, SceneError, shown
 from studies.shell.scene.values import KEYS, split
 from studies.shell.sweep import Column
 
@@ -93,59 +85,40 @@ def grid(values: Mapping[str, Sequence[float]]) -> list[Values]:
     return [dict(zip(values, reversed(row), strict=True)) for row in rows]
 
 
-@dataclass(frozen=True, kw_only=True)
-class Plan:
-    """One axis or two, how a motion `start`s, and what is `fixed` of frequency, excess and amplitude."""
-
-    axes: tuple[Axis, ...]
-    start: str
-    fixed: Values
-
-    def columns(self) -> list[list[Values]]:
-        """The cells, by what is computed together: a line along the first axis, or each alone."""
-        cells = grid({axis.name: axis.values for axis in self.axes})
-        size = 1 if self.start == REST and len(self.axes) == 1 else len(self.axes[0].values)
-        return [cells[k : k + size] for k in range(0, len(cells), size)]
-
-    def with_modes(self, scene: Scene) -> tuple[Scene, str]:
-        """The scene with as many modes as the ends of the sweep need (``least_model``), and why."""
-        if scene.modes.count or "modes.count" in (axis.name for axis in self.axes):
-            return scene, ""
-        found, refused = list[tuple[Scene, str]](), list[Refusal]()
-        for corner in grid({axis.name: axis.values[:: len(axis.values) - 1] for axis in self.axes}):
-            cell = {**self.fixed, **corner}
-            try:  # modes are chosen with the plate of [stop] alone
-                there = scene_of(replace(scene, stops=()), cell)
-                excess = oscillator_at(there, cell).excess
-                found.append(least_modes(there, ALWAYS, [cell["frequency"]], excess))
-            except Refusal as error:
-                refused.append(error)
-        if not found:
-            raise refused[0]
-        most, why = max(found, key=lambda pair: pair[0].modes.count)
-        return scene.replace({"modes.count": most.modes.count}, provenance="least"), why
-
-
-def plan_of(scene: Scene, options: Mapping[str, Any]) -> Plan:
-    """The sweep of a command; refuses one that cannot be computed."""
+def plan_of(scene: Scene, options: Mapping[str, Any]) -> tuple[list[Axis], dict[str, float]]:
+    """What a command sweeps, and what it fixes of `DRIVE`; refuses a sweep that cannot be computed."""
     harmonic(scene)
-    axes = tuple(axis_of(text) for text in options["over"])
+    axes = [axis_of(text) for text in options["over"]]
     fixed = {name: options[name] for name in DRIVE if options[name] is not None}
     names = [axis.name for axis in axes] + list(fixed)
-    if not 1 <= len(axes) <= 2:
-        raise InvalidValue(f"over has {', '.join(names)}; it must name one key or two")
-    if twice := [name for name in names if names.count(name) > 1]:
-        raise InvalidValue(f"{twice[0]} is swept or given twice; leave out one of them")
-    if {"excess", "amplitude"} <= {*names}:
-        words = "over sweeps the excess by default; leave out one of them"
-        raise InvalidValue(f"excess and amplitude are both given or swept: {words}")
-    if (cells := math.prod(len(axis.values) for axis in axes)) > MOST_CELLS:
-        raise InvalidValue(f"over makes {cells} cells; at most {MOST_CELLS} are computed")
-    if not {"excess", "amplitude"} & {*names}:
+    sizes, cells = {"excess", "amplitude"} & {*names}, math.prod(len(axis.values) for axis in axes)
+    if not 1 <= len(axes) <= 2 or len({*names}) < len(names) or len(sizes) > 1 or cells > MOST_CELLS:
+        words = "over takes one key or two (by default the excess), each number is swept or given once"
+        words += f", excess and amplitude exclude each other, and at most {MOST_CELLS} cells are computed"
+        raise InvalidValue(f"over and the options name {', '.join(names)}, {cells} cells; {words}")
+    if not sizes:
         fixed["excess"] = letter.TIME_TRACE_EXCESS
     if "frequency" not in names:
         fixed["frequency"] = own_frequency(scene, letter.TIME_TRACE_HZ)
-    return Plan(axes=axes, start=options["start"], fixed=fixed)
+    return axes, fixed
+
+
+def with_modes(scene: Scene, axes: Sequence[Axis], fixed: Values) -> tuple[Scene, str]:
+    """The scene with as many modes as the ends of the sweep need (``least_model``), and why."""
+    ends = {axis.name: axis.values[:: len(axis.values) - 1] for axis in axes}
+    if scene.modes.count or "modes.count" in ends:
+        return scene, ""
+    found, refused = list[tuple[Scene, str]](), list[Refusal]()
+    for cell in ({**fixed, **corner} for corner in grid(ends)):
+        try:  # modes are chosen with the plate of [stop] alone
+            there = replace(scene, stops=()).replace({name: cell[name] for name in cell if name in KEYS})
+            found.append(least_modes(there, ALWAYS, [cell["frequency"]], oscillator_at(there, cell).excess))
+        except Refusal as error:
+            refused.append(error)
+    if not found:
+        raise refused[0]
+    most, why = max(found, key=lambda pair: pair[0].modes.count)
+    return scene.replace({"modes.count": most.modes.count}, provenance="least"), why
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -168,17 +141,13 @@ class Cell:
 NUMBERS = [entry.name for entry in fields(Cell)][1:]
 
 
-def scene_of(scene: Scene, cell: Values) -> Scene:
-    """The scene with the values of the cell in place of its own."""
-    return scene.replace({name: value for name, value in cell.items() if name in KEYS})
-
-
 _model_of = lru_cache(maxsize=1024)(model_of)
 BARE = Scene()
 
 
 def oscillator_at(scene: Scene, cell: Values) -> ImpactOscillator:
-    """The beam of the scene on its stops, driven as in the cell."""
+    """The beam on its stops, with the values of the cell in place of the scene's."""
+    scene = scene.replace({name: cell[name] for name in cell if name in KEYS})
     # cells that share a spring share its modes; the drive is checked below
     spring = replace(scene, stop=BARE.stop, contact=BARE.contact, scan=BARE.scan, stops=())
     model = _model_of(spring.replace({"drive.kind": "none"}))
@@ -189,18 +158,16 @@ def oscillator_at(scene: Scene, cell: Values) -> ImpactOscillator:
     return oscillator.with_excess(cell["excess"])
 
 
-def settled_cell(
-    oscillator: ImpactOscillator, state: State | None, most_cycles: int
-) -> tuple[dict[str, float], State]:
+def settled_cell(oscillator: ImpactOscillator, state: State | None, most: int) -> tuple[Values, State]:
     """The numbers of the motion from `state`, or from rest if it is None or refused; and where it ends."""
     several = len(oscillator.stops) > 1
     strobed = (SimulatedMap if several else StroboscopicMap)(oscillator=oscillator)
     try:
-        settled = settle(strobed, state or State.rest(oscillator.n_modes), most_cycles=most_cycles)
+        settled = settle(strobed, state or State.rest(oscillator.n_modes), most_cycles=most)
     except Refusal:
         if state is None:
             raise
-        return settled_cell(oscillator, None, most_cycles)
+        return settled_cell(oscillator, None, most)
     end, periods = replace(settled.end, time=0.0), settled.m or WITHOUT
     run = simulate(oscillator, end, periods=periods)
     touches = run.impacts
@@ -224,7 +191,7 @@ def column_of(cells: Sequence[Values], scene: Scene, start: str, fixed: Values) 
     found, state, step = list[dict[str, Any]](), None, -1 if start == "down" else 1
     for cell in ({**fixed, **swept} for swept in cells[::step]):
         try:
-            oscillator = oscillator_at(scene_of(scene, cell), cell)
+            oscillator = oscillator_at(scene, cell)
             numbers, end = settled_cell(oscillator, state, max(scene.scan.settle_cycles, 1))
             state = None if start == REST else end
             found.append({**numbers, "excess": cell.get("excess", oscillator.excess), "reason": ""})
