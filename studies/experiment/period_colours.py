@@ -4,7 +4,7 @@ Colours are the seven of the house style, one after the other with the period, l
 neighbouring periods and period doublings always differ; every region that is large enough has its number.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -29,32 +29,42 @@ LEAST_WIDTH = 0.04  # part of a panel's sides that a region must have in any dir
 
 
 def paint(
-    axis: Axes, x: np.ndarray, y: np.ndarray, period: np.ndarray, places: np.ndarray, colours: Sequence[str]
-) -> None:
-    """A plane in `colours` by `places`, shape (n_x, n_y); period 0 is none, and -1 a failure."""
-    table = np.array([to_rgb(one) for one in (*colours, NONE, FAILED)])
-    image = table[np.where(period < 0, -1, np.where(period == 0, -2, places))]
-    axis.pcolormesh(x, y, image.swapaxes(0, 1), shading="nearest", rasterized=True)
-
-
-def paint_periods(
     axis: Axes,
     x: np.ndarray,
     y: np.ndarray,
     period: np.ndarray,
-    impacts: np.ndarray,
+    values: np.ndarray,
+    *,
+    colours: Sequence[str] = PERIODS,
+    words: Callable[[int], str] = "p$_{{{}}}$".format,
     least: float = LEAST_WIDTH,
 ) -> None:
-    """A plane of periods with their numbers."""
-    paint(axis, x, y, period, np.where(impacts == 0, 0, np.minimum(period, LAST)), PERIODS)
-    hit = np.where((period > 0) & (impacts > 0), period, 0)
-    write_numbers(axis, hit, x, y, [f"p$_{{{m}}}$" for m in range(hit.max() + 1)], least)
+    """A plane in `colours` by `values`, shape (n_x, n_y), with the `words` of the value in large regions."""
+    image = colours_of(period, values, colours)
+    axis.pcolormesh(x, y, image.swapaxes(0, 1), shading="nearest", rasterized=True)
+    outline, sides = [withStroke(linewidth=1.4, foreground="white")], [1.0 / count for count in period.shape]
+    values = np.where(period > 0, values, 0)
+    for value in np.unique(values[values > 0]):
+        marks, _count = ndimage.label(values == value)
+        sizes = np.bincount(marks.ravel())
+        for mark in 1 + np.flatnonzero(sizes[1:] >= least**2 * values.size):
+            depth = ndimage.distance_transform_edt(np.pad(marks == mark, 1), sampling=sides)[1:-1, 1:-1]
+            i, j = np.unravel_index(int(np.argmax(depth)), depth.shape)
+            if depth[i, j] - 0.5 * min(sides) >= 0.5 * least:
+                axis.text(x[i], y[j], words(value), size=5.5, ha="center", va="center", path_effects=outline)
 
 
-def key_of_periods(on: Axes | Figure, period: np.ndarray, impacts: np.ndarray, **place: Any) -> None:
-    """The colours of the periods that occur."""
-    seen = set(np.minimum(period[(period > 0) & (impacts > 0)], LAST).tolist())
-    colours = {NAMES[m]: PERIODS[m] for m in sorted(seen)}
+def colours_of(period: np.ndarray, values: np.ndarray, colours: Sequence[str] = PERIODS) -> np.ndarray:
+    """The colours by `values`, the last one for all larger ones; a period of 0 is none, -1 a failure."""
+    table = np.array([to_rgb(one) for one in (*colours, NONE, FAILED)])
+    places = np.minimum(values, len(colours) - 1)
+    found: np.ndarray = table[np.where(period < 0, -1, np.where(period == 0, -2, places))]
+    return found
+
+
+def key_of_periods(on: Axes | Figure, period: np.ndarray, struck: np.ndarray, **place: Any) -> None:
+    """The colours of the periods that occur; `struck` is 0 without impacts, otherwise the period."""
+    colours = {NAMES[m]: PERIODS[m] for m in np.unique(np.minimum(struck[struck > 0], LAST)).tolist()}
     key(on, "period m", colours, bool(np.any(period < 0)), **place)
 
 
@@ -64,25 +74,3 @@ def key(on: Axes | Figure, title: str, colours: Mapping[str, str], failed: bool,
     marks = [Patch(facecolor=colour, edgecolor="0.3", linewidth=0.4) for colour in known.values()]
     usual = {"loc": "center left", "bbox_to_anchor": (1.0, 0.5), "ncols": 2 if len(marks) > 9 else 1}
     on.legend(marks, list(known), title=title, handlelength=1.0, **(place or usual))
-
-
-def write_numbers(
-    axis: Axes,
-    values: np.ndarray,
-    x: np.ndarray,
-    y: np.ndarray,
-    words: Sequence[str],
-    least: float = LEAST_WIDTH,
-) -> None:
-    """Each large region of one value says it, at its place farthest from its border."""
-    outline = [withStroke(linewidth=1.4, foreground="white")]
-    for value in np.unique(values[values > 0]):
-        marks, _count = ndimage.label(values == value)
-        sizes = np.bincount(marks.ravel())
-        for mark in 1 + np.flatnonzero(sizes[1:] >= least**2 * values.size):
-            sides = [1.0 / count for count in values.shape]
-            depth = ndimage.distance_transform_edt(np.pad(marks == mark, 1), sampling=sides)[1:-1, 1:-1]
-            i, j = np.unravel_index(int(np.argmax(depth)), depth.shape)
-            if depth[i, j] - 0.5 * min(sides) < 0.5 * least:
-                continue
-            axis.text(x[i], y[j], words[value], size=5.5, ha="center", va="center", path_effects=outline)

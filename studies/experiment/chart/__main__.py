@@ -41,7 +41,6 @@ from studies.experiment.chart.model import (
     column_at,
     folds_of_beam,
     folds_of_single_mode,
-    side_by_side,
 )
 from studies.physics.descriptions import TITLES, strobed_at
 from studies.physics.least_model import least_modes
@@ -128,7 +127,8 @@ def drawn(
     """Store the cells and what theory says, draw both."""
     from studies.experiment.chart.figure import CAPTION, draw  # matplotlib is slow to import
 
-    edges, cells = bands_in(scene, *plane.frequencies_hz), side_by_side(columns)
+    edges, names = bands_in(scene, *plane.frequencies_hz), ("m", "impacts", "cycles")
+    cells = {name: np.stack([one[name] for one in columns], axis=1).astype(np.int32) for name in names}
     frequencies, excesses, lowest = plane.frequencies(), plane.rising_excesses(), EXCESSES[0]
     if model == "single_mode":
         folds = folds_of_single_mode(oscillator, frequencies, lowest)

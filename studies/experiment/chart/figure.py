@@ -1,7 +1,6 @@
 """The chart as a figure: upward scan left, downward scan right; period above, impacts in a period below.
 
-Colours and numbers come from ``period_colours``.  The upright axis is that of the grid
-(``model.sheared``).
+Colours and numbers come from ``period_colours``, the upright axis from ``model.sheared``.
 
 Figures of the settled motions: strobe points and exponents of a scan, and basins on the strobe plane.
 """
@@ -16,17 +15,9 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from contact import Band, plots
+from studies.experiment.chart import settled
 from studies.experiment.chart.model import Fold, Plane, sheared
-from studies.experiment.chart.settled import (
-    CHAOTIC,
-    NOT_SETTLED,
-    PERIODIC,
-    UNDECIDED,
-    WITHOUT,
-    Settlement,
-    Starts,
-)
-from studies.experiment.period_colours import key, key_of_periods, paint, paint_periods, write_numbers
+from studies.experiment.period_colours import key, key_of_periods, paint
 from studies.physics.descriptions import TITLES
 from studies.shell import plotting
 from studies.shell.digits import written
@@ -56,13 +47,12 @@ def draw(
     """The figure."""
     figure, axes = plotting.new_figure(2, 2, width=plotting.PAGE, height=0.150, sharex=True, sharey=True)
     x, y = plane.frequencies(), sheared(plane.rising_excesses())
-    names = ["", *CLASSES.values()]
+    names, struck = ["", *CLASSES.values()], np.where(cells["impacts"] > 0, cells["m"], 0)
+    classes = np.searchsorted(list(CLASSES), cells["impacts"], side="right")
     for k, way in enumerate(("upward scan", "downward scan")):
-        period, impacts = cells["m"][k], cells["impacts"][k]
-        classes = np.searchsorted(list(CLASSES), impacts, side="right")
-        paint_periods(axes[0, k], x, y, period, impacts)
-        paint(axes[1, k], x, y, period, classes, IMPACTS)
-        write_numbers(axes[1, k], np.where(period > 0, classes, 0), x, y, names)
+        period = cells["m"][k]
+        paint(axes[0, k], x, y, period, struck[k])
+        paint(axes[1, k], x, y, period, classes[k], colours=IMPACTS, words=names.__getitem__)
         for axis in axes[:, k]:
             _draw_theory(axis, edges, folds)
             axis.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
@@ -72,10 +62,9 @@ def draw(
     for axis in axes[:, 0]:
         axis.set_yticks(sheared(TICKS), [written(t) for t in TICKS])
         plotting.label(axis.yaxis, plotting.EXCESS)
-    key_of_periods(axes[0, 1], cells["m"], cells["impacts"])
-    hit, failed = (cells["impacts"] > 0) & (cells["m"] > 0), bool(np.any(cells["m"] < 0))
-    seen = set(np.searchsorted(list(CLASSES), cells["impacts"][hit], side="right").tolist())
-    key(axes[1, 1], "impacts", {names[k]: IMPACTS[k] for k in sorted(seen)}, failed)
+    key_of_periods(axes[0, 1], cells["m"], struck)
+    seen, failed = np.unique(classes[struck > 0]).tolist(), bool(np.any(cells["m"] < 0))
+    key(axes[1, 1], "impacts", {names[k]: IMPACTS[k] for k in seen}, failed)
     plotting.legend_below(figure, axes.flat, 4)
     return figure
 
@@ -101,18 +90,18 @@ SCAN = (
 )
 BASINS = "Where starts on the strobe plane of Eq. (1) lead below grazing: to p_m, or to no impacts at all."
 LOOKS = {
-    WITHOUT: ("v", plotting.SKY),
-    PERIODIC: ("o", plotting.BLUE),
-    CHAOTIC: ("s", plotting.VERMILION),
-    NOT_SETTLED: ("^", plotting.ORANGE),
-    UNDECIDED: ("x", "0.5"),
+    settled.WITHOUT: ("v", plotting.SKY),
+    settled.PERIODIC: ("o", plotting.BLUE),
+    settled.CHAOTIC: ("s", plotting.VERMILION),
+    settled.NOT_SETTLED: ("^", plotting.ORANGE),
+    settled.UNDECIDED: ("x", "0.5"),
 }
 """Marker and colour of a kind."""
 
 
 @plotting.in_house_style
 def draw_scan(
-    rows: Sequence[Settlement], strobes: Sequence[np.ndarray], frequency: float, quantity: str
+    rows: Sequence[settled.Settlement], strobes: Sequence[np.ndarray], frequency: float, quantity: str
 ) -> Figure:
     """Strobe points and exponents against the excess, a column for each model."""
     figure, axes = plotting.new_figure(2, 2, width=plotting.PAGE, height=0.112, sharex="col")
@@ -121,9 +110,9 @@ def draw_scan(
         for way, look in (("up", plotting.UP), ("down", plotting.DOWN)):
             mine = [k for k, row in enumerate(rows) if (row.model, row.direction) == (name, way)]
             excess, points = np.array([rows[k].excess for k in mine]), np.array([strobes[k] for k in mine])
-            settled = np.array([rows[k].m > 0 for k in mine])
+            periodic = np.array([rows[k].m > 0 for k in mine])
             words = {"label": f"{way}ward scan", "pale": "pale: not periodic"}
-            plots.strobes(upper, 1e2 * excess, 1e3 * points, settled, **look, **words)
+            plots.strobes(upper, 1e2 * excess, 1e3 * points, periodic, **look, **words)
         for kind, (marker, colour) in LOOKS.items():
             alike = [(1e2 * r.excess, r.lyapunov_map) for r in rows if (r.model, r.kind) == (name, kind)]
             mark: plotting.Style = {"markersize": 3.4, "mfc": "none", "markeredgecolor": colour}
@@ -142,7 +131,7 @@ def draw_scan(
 
 
 @plotting.in_house_style
-def draw_basins(plane: Starts, leads: np.ndarray, frequency: float) -> Figure:
+def draw_basins(plane: settled.Starts, leads: np.ndarray, frequency: float) -> Figure:
     """The strobe plane, coloured by where its points lead."""
     figure, axis = plotting.new_figure(height=0.088)
     oscillator, m = plane.strobed.oscillator, plane.m

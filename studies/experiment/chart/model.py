@@ -93,15 +93,6 @@ class Fold:
     excess: float
 
 
-def side_by_side(columns: Sequence[Column]) -> dict[str, NDArray[np.int32]]:
-    """`period` (0: none found), `impacts` and `cycles` (drive periods spent) of all columns, arrays of shape
-    (2, n_frequencies, n_excesses): upward scan first, excesses rise in both; -1 where a cell failed."""
-    return {
-        name: np.stack([column[name] for column in columns], axis=1).astype(np.int32)
-        for name in ("m", "impacts", "cycles")
-    }
-
-
 LARGEST = 24  # largest m that is drawn; its band ends at 23.98 Hz for the letter's period
 
 FEWEST = 7  # folds of the beam looked for in each band at least, so that its curve is smooth

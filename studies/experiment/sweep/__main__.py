@@ -1,10 +1,9 @@
 """The settled motion over one or two numbers of a scene or of its drive.
 
 Claim (letter 1996): the control parameters, amplitude and frequency, decide the settled motion.  So do the
-numbers of the spring and of the stop.  In each cell of the sweep the beam settles from rest, or from the
-motion of the cell before it as in a slow change on a rig (--start up, --start down, along the first key).
-The change from cell to cell is sudden: steps next to grazing must be small, lest the step itself makes the
-first touch.
+numbers of the spring and of the stop.  In each cell the motion settles from rest, or from the cell before it
+as in a slow change on a rig (--start up, --start down, along the first key).  Steps next to grazing must be
+small, lest the step itself makes the first touch.
 
     period m         drive periods after which the motion repeats; 0: none up to 64
     impacts          in one period, on all stops; the scene may have several, [[stops]]
@@ -18,152 +17,94 @@ KEY is any number of a scene (--dump-scene lists them), or frequency [Hz], exces
 Every finished column is kept (``studies.shell.sweep``): the same command goes on; --fresh begins anew.
 
 Run:     python -m studies sweep [--over KEY=FROM:TO:N] [--over KEY=FROM:TO:N] [--start up]
-Writes:  sweep.csv (one row a cell), sweep.png; for two keys sweep.npz (arrays on the grid)
+Writes:  sweep.csv (one row a cell), sweep.npz (arrays on the model.grid), sweep.png
 """
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import fields, make_dataclass
+from collections.abc import Mapping, Sequence
 from functools import partial
-from itertools import product
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 import numpy as np
 
-from studies import letter
-from studies.experiment.sweep.model import ALL, DRIVE, NUMBERS, REST, Axis, Cell, Plan, axis_of, column_of
+from studies.experiment.sweep import model
+from studies.experiment.sweep.model import ALL, REST, Axis, Cell, Values
 from studies.shell.digits import written
 from studies.shell.options import HERTZ, Within
-from studies.shell.scene import Scene, harmonic, own_frequency
+from studies.shell.scene import Scene
 from studies.shell.study import Run, study
 from studies.shell.sweep import note_failures
 from studies.shell.sweep import sweep as stored
 
-CAPTION = (
-    "Settled motion over the swept numbers: period, impacts, largest force, greatest approach speed, and "
-    "energy lost at the stops in a drive period. Grey cells have none of them."
-)
-
+CAPTION = "Period, impacts, contact force, approach speed and energy lost over the swept numbers."
+HOLDS = "Columns of sweep.csv, shape (n of the second key or 1, n of the first); m is -1 in a failed cell."
 MOST_SHOWN = 100  # cells on the terminal; all are in the table
 STARTS = {"rest": "from the spring at rest", "up": "from the cell below it", "down": "from the cell above it"}
 
 
-def plan_of(scene: Scene, options: Mapping[str, Any]) -> Plan:
-    """The sweep of the command; refuses one that cannot be computed."""
-    harmonic(scene)
-    axes = tuple(axis_of(text) for text in options["over"])
-    swept = {axis.name for axis in axes}
-    fixed = {name: options[name] for name in DRIVE if options[name] is not None}
-    if not {"excess", "amplitude"} & {*fixed, *swept}:
-        fixed["excess"] = letter.TIME_TRACE_EXCESS
-    if "frequency" not in {*fixed, *swept}:
-        fixed["frequency"] = own_frequency(scene, letter.TIME_TRACE_HZ)
-    return Plan(axes=axes, start=options["start"], fixed=fixed)
-
-
-def conditions(scene: Scene, options: Mapping[str, Any]) -> tuple[list[float], float]:
-    """Refuse a sweep that cannot be computed, before anything is; the study chooses its modes itself."""
-    plan_of(scene, options)
-    return [], 0.0
-
-
-@study(quick={"over": ("excess=-0.01:0.02:7",)}, at=conditions, many_stops=True)
+@study(quick={"over": ("excess=-0.01:0.02:7",)}, many_stops=True)
 def sweep(
     scene: Scene,
     run: Run,
     *,
-    over: Annotated[tuple[str, ...], "KEY=FROM:TO:N or KEY=FROM:TO:N:log, one or two"] = (
-        "excess=-0.02:0.06:41",
-    ),
+    over: Annotated[tuple[str, ...], "one or two KEY=FROM:TO:N, or ...:N:log"] = ("excess=-0.02:0.06:41",),
     start: Annotated[Literal["rest", "up", "down"], "of a motion: from rest, or carried along"] = "rest",
     frequency: Annotated[float | None, "drive frequency (Hz), as in time_trace by default", HERTZ] = None,
     excess: Annotated[float | None, "F/F_g - 1 (0.013)", Within(-1, 1e6, open=True)] = None,
-    amplitude: Annotated[
-        float | None, "amplitude of the base (m), instead of the excess", Within(0, 1e3, "m", open=True)
-    ] = None,
+    amplitude: Annotated[float | None, "of the base (m)", Within(0, 1e3, "m", open=True)] = None,
     fresh: Annotated[bool, "forget what is stored and begin anew"] = False,
 ) -> Mapping[str, object]:
     """Compute, store and draw."""
     given = {"over": over, "start": start, "frequency": frequency, "excess": excess, "amplitude": amplitude}
-    plan = plan_of(scene, given)
-    scene = run.choose_modes(*plan.with_modes(scene))
-    drive = ", ".join(f"{name} {in_units(name, value)}" for name, value in plan.fixed.items())
+    axes, fixed = model.plan_of(scene, given)
+    scene = run.choose_modes(*model.with_modes(scene, axes, fixed))
+    drive = in_words(fixed)
     run.say(f"{drive}{'; ' * bool(drive)}each motion starts {STARTS[start]}")
-    settings = {"over": over, "start": start, "fixed": plan.fixed, "scene": scene.values()}
-    name = "-".join([start, *(f"{axis.name}-{len(axis.values)}" for axis in plan.axes)])
-    work = partial(column_of, scene=scene, start=start)
-    columns = stored(run, name, settings, plan.columns(), work, fresh=fresh)
-    cells = plan.on_grid(columns)
-    kind = kind_of(plan.axes)
-    rows = rows_of(plan.axes, cells, kind)
-    shown = [entry.name for entry in fields(kind) if entry.name not in ("carried", "reason")]
-    run.table(
-        "sweep", rows, "The cells of the sweep.", of=kind, show=shown if len(rows) <= MOST_SHOWN else ()
-    )
-    note_failures(run, failures(plan.axes, rows))
-    if len(plan.axes) == 2:
-        holds = (
-            "The columns of sweep.csv, shape (n of the second key, n of the first); m -1 in a failed cell."
-        )
-        places = {axis.name: axis.values for axis in plan.axes if axis.name not in DRIVE}
-        run.arrays("sweep", holds, **places, **cells)
+    settings = {"over": over, "start": start, "fixed": fixed, "scene": scene.values()}
+    name = "-".join([start, *(f"{axis.name}-{len(axis.values)}" for axis in axes)])
+    work = partial(model.column_of, scene=scene, start=start, fixed=fixed)
+    swept, size = model.grid({axis.name: axis.values for axis in axes}), len(axes[0].values)
+    step = 1 if start == REST and len(axes) == 1 else size  # the cells of a line in one column
+    lines = [swept[at : at + step] for at in range(0, len(swept), step)]
+    columns = stored(run, name, settings, lines, work, fresh=fresh)
+    cells = {each: np.concatenate([one[each] for one in columns]).reshape(-1, size) for each in model.NUMBERS}
+    rows = rows_of(swept, cells)
+    run.table("sweep", rows, "The cells of the sweep.", of=Cell, show=None if len(rows) <= MOST_SHOWN else ())
+    note_failures(run, ((in_words(row.swept), row.reason) for row in rows if row.reason))
+    run.arrays("sweep", HOLDS, **{axis.name: axis.values for axis in axes} | cells)
     from studies.experiment.sweep.figure import draw  # matplotlib is slow to import
 
-    run.figure("sweep", draw(plan.axes, cells, drive), CAPTION)
-    findings(run, plan, cells)
-    return {"rows": rows, "modes": scene.kept_modes, "start": start, **plan.fixed}
+    run.figure("sweep", draw(axes, cells, drive), CAPTION)
+    findings(run, axes, cells)
+    if start != REST:
+        run.say(f"cells whose motion starts from rest: {np.sum(~cells['carried'] & (cells['m'] >= 0))}")
+    return {"rows": rows, "modes": scene.kept_modes, "start": start, **fixed}
 
 
-def in_units(name: str, value: float) -> str:
-    """A value with the unit of its name."""
-    unit = ALL[name].unit
-    return f"{value:.6g} {unit if unit != '1' else ''}".rstrip()
+def in_words(values: Values) -> str:
+    """Names, values and units."""
+    return ", ".join(f"{name} {v:.6g} {ALL[name].unit}".removesuffix(" 1") for name, v in values.items())
 
 
-def kind_of(axes: Sequence[Axis]) -> type[Cell]:
-    """The cells with a column for each key of the scene that is swept, before the others."""
-    keys = {axis.name: axis.unit for axis in axes if axis.name not in DRIVE}
-    words = {name: f"{name} [{unit}]" if unit not in ("", "1") else name for name, unit in keys.items()}
-    entries = [(name.replace(".", "_"), Annotated[float, text]) for name, text in words.items()]
-    swept = make_dataclass("Swept", entries, frozen=True, kw_only=True)
-    return make_dataclass("Cell", [], bases=(Cell, swept), frozen=True, kw_only=True)
-
-
-def rows_of(axes: Sequence[Axis], cells: Mapping[str, np.ndarray], kind: type[Cell]) -> list[Cell]:
-    """The cells in the order of the grid, the first axis fastest."""
-    rows, keys = list[Cell](), [axis.name.replace(".", "_") for axis in axes]
-    known = {entry.name for entry in fields(kind)}
-    values = product(*(axis.values for axis in reversed(axes)))
-    for place, swept in enumerate(values):
-        cell = {name: numbers.flat[place].item() for name, numbers in cells.items()}
-        at = dict(zip(keys, reversed(swept), strict=True))
-        failed = {"m": None, "impacts": None} if cell["reason"] else {}
-        rows.append(kind(**cell | failed | {name: at[name] for name in at.keys() & known}))
+def rows_of(swept: Sequence[Values], cells: Mapping[str, np.ndarray]) -> list[Cell]:
+    """The cells in the order of the model.grid, the first axis fastest."""
+    columns, rows = [values.ravel().tolist() for values in cells.values()], list[Cell]()
+    for at, *row in zip(swept, *columns, strict=True):
+        numbers = dict(zip(cells, row, strict=True))
+        rows.append(Cell(swept=at, **numbers | ({"m": None, "impacts": None} if numbers["reason"] else {})))
     return rows
 
 
-def failures(axes: Sequence[Axis], rows: Sequence[Cell]) -> Iterator[tuple[str, str]]:
-    """Where cells failed, and why."""
-    places = product(*(axis.values for axis in reversed(axes)))
-    for row, place in zip(rows, places, strict=True):
-        if row.reason:
-            where = zip(axes, reversed(place), strict=True)
-            yield ", ".join(f"{axis.name} {in_units(axis.name, value)}" for axis, value in where), row.reason
-
-
-def findings(run: Run, plan: Plan, cells: Mapping[str, np.ndarray]) -> None:
-    """What came out, what began from rest, and a key that changes nothing."""
+def findings(run: Run, axes: Sequence[Axis], cells: Mapping[str, np.ndarray]) -> None:
+    """What came out, and a key that changes nothing."""
     done = cells["m"] >= 0
     if done.any():
         share = written(100.0 * float(np.mean(cells["m"][done] > 0)), 3)
         run.finding(f"The motion has a period in {share} % of the cells.")
-        if np.any(cells["peak_force"] > 0.0):
-            most = written(float(np.nanmax(cells["peak_force"])), 3)
-            run.finding(f"The largest contact force of the sweep is {most} N.")
-    later = np.s_[:, :-1] if plan.start == "down" else np.s_[:, 1:]
-    anew = np.sum(done[later] & ~cells["carried"][later])
-    if plan.start != REST and anew:
-        run.say(f"cells that begin from rest, as the motion before cannot start there: {anew}")
-    for axis, name in enumerate(one.name for one in plan.axes):
-        along = [np.moveaxis(cells[key], 1 - axis, 0) for key in NUMBERS if key not in ("carried", "reason")]
-        if len(along[0]) > 1 and all(np.all((v == v[:1]) | (v != v) & (v[:1] != v[:1])) for v in along):
-            run.warn(f"{name} changes no number of this sweep: the scene may make no use of it")
+    if np.any(cells["peak_force"] > 0.0):
+        most = written(float(np.nanmax(cells["peak_force"])), 3)
+        run.finding(f"The largest contact force of the sweep is {most} N.")
+    numbers = [values for name, values in cells.items() if name not in ("carried", "reason")]
+    for number, axis in enumerate(axes):
+        first = [np.broadcast_to(values.take([0], 1 - number), values.shape) for values in numbers]
+        if done.any() and all(map(partial(np.array_equal, equal_nan=True), first, numbers)):
+            run.warn(f"{axis.name} changes no number of this sweep: the scene may make no use of it")
