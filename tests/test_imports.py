@@ -25,12 +25,12 @@ PACKAGES = ("beam", "contact", "studies")
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
 
 FLOORS = {
-    "beam": "parameters record material section centreline spring spring_shapes pieces strip_element assembly "
-    "modes damping point matrices exciter residual_mode modal_test modal_model one_mode derivatives "
+    "beam": "parameters record material section centreline spring spring_shapes pieces strip_element "
+    "assembly modes damping point matrices exciter residual_mode modal_test modal_model one_mode derivatives "
     "reduction frequency_equation large_amplitude spring_mesh space export __init__",
-    "contact": "errors machine speed_table restitution laws hertz stop drive flight plausible steady_response "
-    "oscillator state tables plots impacts trajectory touch engine integrators simulation sensitivity "
-    "one_mode maps virtual_motion collision_numbers collision orbits.families orbits.branches "
+    "contact": "errors machine speed_table restitution laws hertz stop drive flight plausible "
+    "steady_response oscillator state tables plots impacts trajectory touch engine integrators simulation "
+    "sensitivity one_mode maps virtual_motion collision_numbers collision orbits.families orbits.branches "
     "orbits.shooting orbits.observation orbits.__init__ __init__ warm_up",
     "studies": "__init__ letter shell.files shell.programs shell.scene shell physics shell.study "
     "shell.every_study experiment spring methods measurement.next_measurement "

@@ -56,18 +56,22 @@ def film(
     words: str,
     *,
     frames: int,
+    enlarged: float | None = None,
 ) -> Mapping[str, object]:
-    """Film one period of a settled orbit; returns what the summary keeps of it."""
+    """Film one period of a settled orbit; returns what the summary keeps of it.
+
+    Higher modes are drawn `enlarged` times, by default as much as shows well.
+    """
     modes, radius = modes_of(scene), scene.tip.ball_radius_m
     gaps = [stop.side * stop.gap for stop in oscillator.stops if stop.at == "tip"]
     orbit = film_orbit(oscillator, settled.end, settled.m, frames=frames, rate=RATE)
     scenery = Scenery.of(modes, ball_radius=radius, gaps=gaps, amplitude=float(np.abs(orbit.tip).max()))
-    drawn, magnification = drawn_shapes(scenery.mesh, modes, orbit.coordinates)
+    drawn, magnification = drawn_shapes(scenery.mesh, modes, orbit.coordinates, enlarged)
     true, _ = drawn_shapes(scenery.mesh, modes, orbit.coordinates, 1.0)
-    enlarged = [f"higher modes are drawn {magnification:g} times larger"] if magnification > 1.0 else []
+    scaled = [f"higher modes are drawn {magnification:g} times larger"] if magnification > 1.0 else []
     marks = zip(1e3 * orbit.time, 1e3 * orbit.tip, strict=True)
     moments = [
-        Moment(points=points, base=base * DRIVE, touched=plates, lines=[words, *enlarged, *lines], mark=mark)
+        Moment(points=points, base=base * DRIVE, touched=plates, lines=[words, *scaled, *lines], mark=mark)
         for points, base, plates, lines, mark in zip(
             drawn, orbit.base, orbit.touched, lines_of(orbit), marks, strict=True
         )

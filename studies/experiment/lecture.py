@@ -27,7 +27,7 @@ import numpy as np
 from scipy.constants import g
 
 from contact import State, StroboscopicMap, plots
-from contact.orbits import onset_orbit, orbit_end, settle
+from contact.orbits import onset_orbit, settle
 from studies import letter
 from studies.experiment import film as filming
 from studies.experiment.trace import NEEDS, Trace, conditions, repeats, trace_of
@@ -42,7 +42,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 STROBES, SHAKES = 64, 8  # shakes in the orbit diagram, and against time
-MOST_STEPS = 50  # on the way down: orbits of other periods, and steps of irregular impacts between them
+FIRST_STEP, GROWTH, HALVINGS, LOWEST = 1e-4, 0.03, 7, -0.6
+"""Of the way down: first step, steps over the way gone, halvings of the last step, and end [excess]."""
 COARSE, SHARE = 2, 0.02  # decimals of a shaker in mm; largest step of a setting over the amplitude
 
 
@@ -76,26 +77,24 @@ def seen_in(way: str, diagram: Diagram, grazing: float) -> Iterator[Seen]:
         yield Seen(way, first_mm, last_mm, words, first[1], first[2] if first[1] else None)
 
 
-def lowered(
-    strobed: StroboscopicMap, state: State, begins: float, places: int, cycles: int
-) -> tuple[float, float]:
-    """Lower the amplitude from the setting `begins` [mm], by orbits and steps, until impacts end.
+def lowered(strobed: StroboscopicMap, state: State, begins: float, cycles: int) -> float:
+    """Lower the amplitude slowly from the excess `begins`; returns the last excess with impacts.
 
-    Returns the end of the last orbit, and the first setting without impacts after `cycles` shakes [mm].  They
-    are NaN without an orbit, and if impacts do not end.
+    Steps grow with the way gone, and the one in which impacts end is halved `HALVINGS` times.  NaN if there
+    are impacts down to `LOWEST`.
     """
-    grazing, last, now = 1e3 * strobed.oscillator.grazing_amplitude(), math.nan, begins
-    for _ in range(MOST_STEPS):
-        end = orbit_end(strobed, state, now / grazing - 1.0, most_cycles=cycles)
-        if end is not None:
-            now = last = grazing * (1.0 + end.excess)
-            state = end.state
-        now = (math.ceil(now * 10.0**places - 1e-6) - 1) / 10.0**places
-        after = settle(strobed.at(now / grazing - 1.0), state, most_cycles=cycles)
-        if not after.impacts:
-            return last, now
-        state = after.end
-    return last, math.nan
+    excess, step, halved = begins, FIRST_STEP, 0
+    while halved <= HALVINGS:
+        lower = excess - step
+        if lower < LOWEST:
+            return math.nan
+        after = settle(strobed.at(lower), state, most_cycles=cycles)
+        if after.impacts:
+            excess, state = lower, after.end
+            step = max(step, GROWTH * (begins - excess)) if halved == 0 else step
+        if halved or not after.impacts:
+            step, halved = 0.5 * step, halved + 1
+    return excess
 
 
 @study(needs=NEEDS, quick={"frames": 20}, at=conditions)
@@ -119,18 +118,21 @@ def lecture(
     begins = math.ceil(grazing * 10.0**places) / 10.0**places
     at_excess = {"begins": begins / grazing - 1.0, "filmed": excess}
     orbits = {name: onset_orbit(strobed, e, most_cycles=cycles) for name, e in at_excess.items()}
-    last, ends = lowered(strobed, orbits["begins"].end, begins, places, cycles)
-    # rounded, so that no amplitude of the scan lies on the end of an orbit
-    reach = float(f"{max(scene.scan.narrowest, np.nan_to_num(abs(1.0 - np.fmax(last, ends) / grazing))):.2g}")
+    last = grazing * (1.0 + lowered(strobed, orbits["begins"].end, at_excess["begins"], cycles))
+    ends = math.floor((last - 0.02 * abs(grazing - last)) * 10.0**places) / 10.0**places
+    reach = max(scene.scan.narrowest, abs(np.nan_to_num(last, nan=0.9 * grazing) / grazing - 1.0))
     points = min(scene.scan.points, 21) if run.quick else scene.scan.points
-    values = np.linspace(-min(scene.scan.reach_below * reach, 0.5), reach, points)
+    farthest = 1.05 * max(reach, *at_excess.values())
+    near, far = np.linspace(-1.4 * reach, reach, points), np.linspace(reach, farthest, points // 4)
+    values = np.unique([*near, *far, at_excess["begins"]])
     scans = up_and_down(strobed, values, observe=strobed.tip, settle_cycles=cycles, record_cycles=STROBES)
     for failure in (one for diagram in scans.values() for one in diagram.failures):
         run.failed("scan", failure)
     seen = {name: in_words(one.m, one.impacts) + f" (p{one.m})" * (one.m > 1) for name, one in orbits.items()}
     mm = {"grazing": grazing, "begins": begins, "last": last, "ends": ends, "gap": 1e3 * scene.stop.gap_m}
     mm["filmed"] = grazing * (1.0 + excess)
-    said = sentences(scene, hz, cycles, places, mm, seen)
+    wait = max(orbit.cycles for orbit in orbits.values()) / hz
+    said = sentences(scene, model.free_period, hz, wait, places, mm, seen)
     for sentence in said:
         run.say(sentence)
     run.text("lecture.txt", "\n".join(said) + "\n", "What to set on the bench, and what is seen.")
@@ -138,7 +140,7 @@ def lecture(
     run.table("seen", rows, "What is seen at which amplitude of the base.", of=Seen)
     below, above = strobed.at(BELOW), strobed.at(at_excess["begins"])
     titles = (
-        f"{(1.0 + BELOW) * grazing:.{places + 1}f} mm: no impact",
+        f"{(1.0 + BELOW) * grazing:.{places + 1}f} mm at the clamp: no impact",
         f"{begins:.{places}f} mm: ▼ {seen['begins']}",
     )
     starts = (below.oscillator, below.steady()), (above.oscillator, orbits["begins"].end)
@@ -148,31 +150,40 @@ def lecture(
         filmed, oscillator = orbits["filmed"], strobed.at(excess).oscillator
         trace = trace_of(oscillator, filmed.end, filmed.m or filming.APERIODIC)
         words = f"at {hz:g} Hz, amplitude {mm['filmed']:.{places}f} mm: {seen['filmed']}"
-        filming.film(scene, run, oscillator, filmed, trace, words, frames=frames)
+        filming.film(scene, run, oscillator, filmed, trace, words, frames=frames, enlarged=1.0)
     run.finding(f"Where the ball begins to hit the plate, {repeats(orbits['begins'].m)}.")
     return {"rows": rows, "frequency_hz": hz, "amplitudes_mm": mm, "seen": seen, "sentences": said}
 
 
 def sentences(
-    scene: Scene, hz: float, shakes: int, places: int, mm: Mapping[str, float], seen: Mapping[str, str]
+    scene: Scene,
+    period: float,
+    hz: float,
+    wait: float,
+    places: int,
+    mm: Mapping[str, float],
+    seen: Mapping[str, str],
 ) -> list[str]:
     """What to set on the bench, and what is seen."""
     free = f" with {1e3 * scene.spring.leg_length_m:.4g} mm free" if scene.spring.kind == "cantilever" else ""
-    begins, apart, step = mm["begins"], mm["grazing"] - mm["last"], 10.0**-places
+    begins, apart = mm["begins"], mm["grazing"] - mm["last"]
     size = 1e-3 * begins * (2.0 * math.pi * hz) ** 2 / g
-    ends = f"Lower it to {mm['ends']:.{places}f} mm: the impacts end."
+    ends = f"Lower it slowly to {mm['ends']:.{places}f} mm: the impacts end."
     exact = f"More exactly, impacts begin at {mm['grazing']:.{places + 2}f} mm"
-    exact += f", and regular impacts end at {mm['last']:.{places + 2}f} mm" if math.isfinite(apart) else ""
-    small = f"This hysteresis of {apart:.2g} mm is less than {step:g} mm: only finer steps show it."
+    exact += f", and end at {mm['last']:.{places + 2}f} mm" if math.isfinite(apart) else ""
+    small = f"This hysteresis of {apart:.2g} mm is too small for steps of {10.0**-places:g} mm."
     return [
-        f"Clamp the {spring_in_words(scene)}{free}.",
-        f"Hold the plate {mm['gap']:.2f} mm from the resting ball.",
-        f"Shake the clamp at {hz:g} Hz, and wait up to {shakes / hz:.0f} s at each amplitude.",
-        f"Raise the amplitude to {begins:.{places}f} mm: the ball begins to hit, with {seen['begins']}.",
+        f"Clamp the {spring_in_words(scene)}{free}. Plucked, it vibrates at {1.0 / period:.2f} Hz.",
+        f"Fix the plate to the clamp, {mm['gap']:.2f} mm from the resting ball: both are shaken together.",
+        f"Shake the clamp at {hz:g} Hz. Wait about {wait:.0f} s at each amplitude.",
+        f"Raise the amplitude slowly to {begins:.{places}f} mm: the ball begins to hit the plate, "
+        f"with {seen['begins']}.",
         f"That is {2.0 * begins:.{places}f} mm from peak to peak, with a peak acceleration of {size:.3g} g.",
-        ends if math.isfinite(mm["ends"]) else "Lower it again: the impacts go on.",
+        ends
+        if math.isfinite(apart)
+        else f"Lower it slowly to {-100.0 * LOWEST:.0f} % less: the impacts go on.",
         f"{exact}.",
-        *([small if apart > 0.0 else "There is no hysteresis."] if apart < step else []),
+        *([small] if apart < 10.0**-places else []),
         f"At {mm['filmed']:.{places}f} mm the audience sees: {seen['filmed']}.",
     ]
 
@@ -205,7 +216,7 @@ def draw(
             found, named = scans[way], {"label": f"amplitude {name}", "pale": "pale: irregular"}
             amplitude = mm["grazing"] * (1.0 + found.excess)
             plots.strobes(axis, amplitude, 1e3 * found.points, found.m > 0, **named, **look)
-        for name, key in (("impacts begin", "grazing"), ("regular impacts end", "last")):
+        for name, key in (("impacts begin", "grazing"), ("impacts end", "last")):
             if math.isfinite(mm[key]):
                 axis.axvline(mm[key], **{**plotting.GUIDE, "color": "black"})
                 side = "left" if (key == "grazing") == (mm["grazing"] >= mm["last"]) else "right"
@@ -213,8 +224,7 @@ def draw(
                 axis.text(mm[key], 1.0, words, transform=up, ha=side, va="bottom")
         plotting.label(axis.xaxis, "amplitude of the clamp", "mm")
         plotting.label(axis.yaxis, "ball, once in each shake", "mm")
-        words = "end at" if mm["last"] >= mm["grazing"] else "go on below"
-        figure.suptitle(f"Once begun, the impacts {words} grazing", fontweight="bold")
+        figure.suptitle("Once begun, the impacts go on below grazing", fontweight="bold")
         plotting.legend_below(figure, [axis], 3)
         run.figure("slide_2", figure, "The ball once in each shake, the amplitude raised and lowered.")
 
@@ -226,6 +236,7 @@ def draw_bench(axes: Axes, gap: str) -> None:
     axes.fill([-1, 0.5, 0.5, -1], [-1.6, -1.6, 1.6, 1.6], color="0.3")
     axes.plot([0.5, 9], [0.0, 0.0], color="0.45", linewidth=3)
     axes.plot([8.5], [0.75], "o", markersize=11)
+    axes.plot([-0.25, -0.25, 7], [1.6, 5.5, 5.5], color="0.3", linewidth=4)
     axes.fill([6.5, 10.5, 10.5, 6.5], [5, 5, 6, 6], color="0.6")
     for x, low, high in ((8.5, 1.6, 5.0), (-0.25, -5.5, -2.0)):
         axes.annotate("", (x, high), (x, low), arrowprops={"arrowstyle": "<->", "shrinkA": 0, "shrinkB": 0})

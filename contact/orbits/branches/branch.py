@@ -65,12 +65,12 @@ class Branch:
 
     def __repr__(self) -> str:
         """Number and kind of its orbits, the first events, and why it ends."""
-        first, admissible = self.orbits[0], [orbit for orbit in self.orbits if orbit.admissible]
-        stable = sum(orbit.stable for orbit in admissible)
+        admissible = [orbit for orbit in self.orbits if orbit.admissible]
+        kinds = f"{len(admissible)} admissible, {sum(orbit.stable for orbit in admissible)} of them stable"
         named = [f"{event.kind} at {event.parameter:#.3g}" for event in self.events[:FEW]]
         more = [f"{len(self.events) - FEW} events more"] if len(self.events) > FEW else []
         return (
-            f"Branch({len(self.orbits)} orbits p{first.m}, {len(admissible)} admissible, {stable} of them stable\n"
+            f"Branch({len(self.orbits)} orbits p{self.orbits[0].m}, {kinds}\n"
             f"    {', '.join([*named, *more]) or 'no event'}\n"
             f"    ended_low={self.ended_low[:WIDE]}\n    ended_high={self.ended_high[:WIDE]})"
         )
