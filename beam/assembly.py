@@ -16,9 +16,8 @@ import numpy as np
 from scipy.sparse import csr_array
 from scipy.sparse.linalg import splu
 
-from .parameters import Array, require, require_array, require_kind, shown
+from .parameters import Array, record, require, require_array, require_kind, shown
 from .pieces import meshed_pieces, motion_at, shared_elements, tie_matrix, tied_matrices
-from .record import record
 from .spring import HELD, LeafSpring, Readout, Tip
 from .strip_element import PieceMesh
 

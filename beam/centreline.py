@@ -16,8 +16,7 @@ from dataclasses import field
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .parameters import Array, InvalidValue, require, require_array, require_each, require_within
-from .record import record
+from .parameters import Array, InvalidValue, record, require, require_array, require_each, require_within
 
 
 @record(eq=True)

@@ -19,8 +19,7 @@ from typing import Protocol, runtime_checkable
 import numpy as np
 
 from .modes import Modes
-from .parameters import Array, require, require_kind, require_within
-from .record import record
+from .parameters import Array, record, require, require_kind, require_within
 
 
 @runtime_checkable

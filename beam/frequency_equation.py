@@ -26,8 +26,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
-from .parameters import Array, require, require_array, require_kind, require_whole, require_within
-from .record import record
+from .parameters import Array, record, require, require_array, require_kind, require_whole, require_within
 from .spring import HELD, Support, two_supports
 
 #: Grid of beta L. Zeros lie about pi apart. Where the rotation of the tip resonates with a bending mode, two

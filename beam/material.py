@@ -14,8 +14,7 @@ factors of ten with temperature and frequency.
 
 import math
 
-from .parameters import require_within, suspect
-from .record import record
+from .parameters import record, require_within, suspect
 
 SLOWEST_WAVE, FASTEST_WAVE = 400.0, 20_000.0
 """Range of the speed of sound sqrt(E/rho) [m/s]: 450 in soft polyethylene, 3500 in brass, 18 000 in diamond.

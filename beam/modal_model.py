@@ -29,9 +29,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from .exciter import modes_on_exciter
 from .modal_test import modes_of_residues
-from .parameters import final, require, require_kind, require_whole, require_within, shown, suspect
+from .parameters import final, record, require, require_kind, require_whole, require_within, shown, suspect
 from .point import Point, check_statics, require_own_statics, row_of
-from .record import record
 from .residual_mode import residual_mode
 
 UNITS = {"omega": "rad/s", "decay_rate": "1/s", "phi": "kg^(-1/2)", "participation": "kg^(1/2)"}

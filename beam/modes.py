@@ -19,9 +19,8 @@ from scipy.sparse import csr_array
 from scipy.sparse.linalg import eigsh
 
 from .assembly import Discretization
-from .parameters import Array, InvalidValue, require_array, require_kind, require_whole
+from .parameters import Array, InvalidValue, record, require_array, require_kind, require_whole
 from .pieces import motion_along
-from .record import record
 
 #: phi sqrt(m_total) and Gamma/sqrt(m_total) below this count as zero. Rounding in symmetric springs gives
 #: about 1e-9; a coupling that matters to a motion is far larger.

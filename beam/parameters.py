@@ -21,6 +21,8 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from .record import record as record  # the decorator of most classes that have parameters
+
 LONGEST_SHOWN = 60
 """Largest number of characters of a value that a sentence quotes."""
 

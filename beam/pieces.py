@@ -21,8 +21,7 @@ from numpy.typing import NDArray
 from scipy.sparse import block_diag, csr_array
 
 from .centreline import Centreline
-from .parameters import Array, require, require_whole, shown
-from .record import record
+from .parameters import Array, record, require, require_whole, shown
 
 MOST_ELEMENTS = 100_000
 """Largest number of elements on a piece; beyond it rounding leaves no digits, and a slip fills the memory."""

@@ -3,8 +3,7 @@
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .parameters import final, require, require_array, require_within
-from .record import record
+from .parameters import final, record, require, require_array, require_within
 
 
 @final

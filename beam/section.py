@@ -27,8 +27,7 @@ from typing import ClassVar
 import numpy as np
 
 from .material import Material
-from .parameters import Array, require, require_kind, require_within
-from .record import record
+from .parameters import Array, record, require, require_kind, require_within
 
 #: Terms of Saint-Venant's series; the remainder is below 1/(4 * 59^4) = 2e-8 of kappa.
 TORSION_TERMS = 30

@@ -21,8 +21,7 @@ from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 
 from .modes import Modes, ShapesAlong
-from .parameters import Array, require_within
-from .record import record
+from .parameters import Array, record, require_within
 from .section import BeamSection, StripSection
 
 STRIP, LAYER, BALL = 0, 1, 2

@@ -21,9 +21,8 @@ import numpy as np
 import skfem as sk
 from scipy.sparse import csr_array
 
-from .parameters import Array
+from .parameters import Array, record
 from .pieces import TANGENTIAL_DEGREE, Field, Piece
-from .record import record
 from .section import BeamSection, StripSection
 
 

@@ -9,8 +9,7 @@ import math
 
 import numpy as np
 
-from beam.parameters import final, require_array, require_within
-from beam.record import record
+from beam.parameters import final, record, require_array, require_within
 
 
 @final

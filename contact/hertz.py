@@ -16,8 +16,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from beam.parameters import final, require_within, suspect
-from beam.record import record
+from beam.parameters import final, record, require_within, suspect
 from contact.laws import POWER, ContactLaw
 
 HERTZ_TIME = 0.8 * math.sqrt(math.pi) * 2.0757065006382507

@@ -23,8 +23,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from beam.parameters import final, require_within
-from beam.record import record
+from beam.parameters import final, record, require_within
 from contact.restitution import damping_ratio
 from contact.speed_table import SPEEDS, Points, SpeedFunction, raised, require_points, require_speeds, sampled
 

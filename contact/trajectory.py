@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from beam.parameters import InvalidValue, require, shown
-from beam.record import record
+from beam.parameters import InvalidValue, record, require, shown
 from contact import plots
 from contact.impacts import Impacts
 from contact.oscillator import ImpactOscillator

@@ -25,7 +25,7 @@ PACKAGES = ("beam", "contact", "studies")
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
 
 FLOORS = {
-    "beam": "parameters record material section centreline spring spring_shapes pieces strip_element "
+    "beam": "record parameters material section centreline spring spring_shapes pieces strip_element "
     "assembly modes damping point matrices exciter residual_mode modal_test modal_model one_mode derivatives "
     "reduction frequency_equation large_amplitude spring_mesh space export __init__",
     "contact": "errors machine speed_table restitution laws hertz stop drive flight plausible "

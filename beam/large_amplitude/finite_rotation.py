@@ -27,9 +27,8 @@ from scipy.sparse import block_diag, bsr_array, csr_array, vstack
 
 from ..assembly import Discretization, assemble
 from ..modes import natural_modes
-from ..parameters import Array, require
+from ..parameters import Array, record, require
 from ..pieces import Field
-from ..record import record
 from ..spring import LeafSpring
 from ..strip_element import bend, stretch
 

@@ -22,8 +22,7 @@ from numpy.typing import NDArray
 from scipy.sparse import block_array, csc_array, csr_array
 from scipy.sparse.linalg import splu
 
-from ..parameters import Array, require, require_kind, require_whole, require_within
-from ..record import record
+from ..parameters import Array, record, require, require_kind, require_whole, require_within
 from .finite_rotation import FiniteRotation
 
 MOST_STEPS = 30

@@ -24,9 +24,8 @@ from scipy.sparse import block_diag
 
 from ..assembly import tip_inertia
 from ..modes import lowest_modes
-from ..parameters import Array, require_kind, require_whole
+from ..parameters import Array, record, require_kind, require_whole
 from ..pieces import Piece, meshed_pieces, motion_along, motion_at, shared_elements, tie_matrix, tied_matrices
-from ..record import record
 from ..spring import HELD
 from ..strip_element import PieceMesh
 from .element import SidePiece

@@ -36,8 +36,7 @@ from dataclasses import replace
 from typing import ClassVar
 
 from ..material import Material
-from ..parameters import require, require_kind, require_within
-from ..record import record
+from ..parameters import record, require, require_kind, require_within
 from ..section import StripSection
 
 

@@ -7,8 +7,7 @@ to one section at the point c [m] from its centroid.
 """
 
 from ..centreline import Centreline
-from ..parameters import require, require_array
-from ..record import record
+from ..parameters import record, require, require_array
 from ..spring import Support, Tip, check_strip
 from .section import SpatialSection
 

@@ -16,8 +16,7 @@ modes k has to follow the ringing of the highest, and nothing shows that it was 
 import math
 from typing import ClassVar
 
-from beam.parameters import require_whole
-from beam.record import record
+from beam.parameters import record, require_whole
 from contact.engine.plan import Plan
 from contact.engine.start import exact_trajectory
 from contact.flight.sampled_crossing import samples_of

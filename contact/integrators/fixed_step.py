@@ -6,8 +6,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from beam.parameters import InvalidValue, brief, is_number, require
-from beam.record import record
+from beam.parameters import InvalidValue, brief, is_number, record, require
 from contact.engine.plan import Plan
 from contact.engine.recorder import Recorder, grown, recorder_for, trajectory_of
 from contact.errors import Diverged, StepTooLarge

@@ -36,8 +36,7 @@ from typing import ClassVar, NamedTuple
 
 import numpy as np
 
-from beam.parameters import require_within
-from beam.record import record
+from beam.parameters import record, require_within
 from contact.flight.numbers import Numbers
 from contact.flight.tip import push_on
 from contact.integrators.fixed_step import FixedStep, stiffness_at

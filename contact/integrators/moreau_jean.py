@@ -30,8 +30,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from beam.parameters import require_within
-from beam.record import record
+from beam.parameters import record, require_within
 from contact.flight.numbers import DECAY, SQUARE, Numbers
 from contact.flight.tip import push_on
 from contact.integrators.fixed_step import FixedStep

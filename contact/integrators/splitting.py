@@ -28,8 +28,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from beam.parameters import InvalidValue
-from beam.record import record
+from beam.parameters import InvalidValue, record
 from contact.flight.modal_flow import flow_over
 from contact.flight.numbers import DAMPED, Numbers, numbers_of
 from contact.integrators.fixed_step import FixedStep

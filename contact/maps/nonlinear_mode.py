@@ -20,8 +20,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from beam.parameters import Array, require_array, require_whole, require_within
-from beam.record import record
+from beam.parameters import Array, record, require_array, require_whole, require_within
 from contact.errors import Chatter, Diverged, NotPeriodic
 from contact.maps.nonlinear_taylor import CHATTERED, FLOWN, ORDER, free_flow, periods
 from contact.maps.protocol import StrobedOrbit, amplitude_factors

@@ -26,8 +26,7 @@ from typing import ClassVar, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from beam.parameters import Array, require, require_array, require_whole, require_within
-from beam.record import record
+from beam.parameters import Array, record, require, require_array, require_whole, require_within
 from contact.machine.compiled import kernel
 from contact.maps.nordmark_coefficients import coefficients
 from contact.maps.protocol import Jacobians, StrobedOrbit, amplitude_factors

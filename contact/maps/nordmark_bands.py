@@ -12,8 +12,7 @@ Source: letter of 1996, Fig. 3 and text.  Derivation: ``docs/theory/map.md``.
 
 import math
 
-from beam.parameters import require_whole, require_within
-from beam.record import record
+from beam.parameters import record, require_whole, require_within
 from contact.maps.nordmark import NordmarkMap, YLine
 from contact.maps.nordmark_orbits import MOST_PERIODS
 

@@ -25,8 +25,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from beam.parameters import require_kind, require_whole, require_within
-from beam.record import record
+from beam.parameters import record, require_kind, require_whole, require_within
 from contact.flight.polynomial_root import positive_roots
 from contact.maps.nordmark import NordmarkMap
 

@@ -12,8 +12,7 @@ from typing import Generic, Protocol, TypeVar, runtime_checkable
 import numpy as np
 from numpy.typing import ArrayLike
 
-from beam.parameters import require, require_array, require_kind
-from beam.record import record
+from beam.parameters import record, require, require_array, require_kind
 
 S = TypeVar("S")
 

@@ -8,8 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from beam.parameters import require, require_array, require_whole
-from beam.record import record
+from beam.parameters import record, require, require_array, require_whole
 from contact.engine.event_loop import DONE
 from contact.engine.start import failure, start_of, state_of
 from contact.errors import UnresolvedCrossing

@@ -8,8 +8,7 @@ folds, and all its orbits at one amplitude, are found by following the branch
 import math
 from itertools import pairwise
 
-from beam.parameters import require_within
-from beam.record import record
+from beam.parameters import record, require_within
 from contact.orbits.branches.amplitude_curve import branch_ended, whole_branch
 from contact.orbits.branches.events import Arc
 from contact.orbits.branches.folds import lowest_fold

@@ -9,8 +9,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from beam.parameters import Array, InvalidValue, require_array, require_kind
-from beam.record import record
+from beam.parameters import Array, InvalidValue, record, require_array, require_kind
 from contact.oscillator import ImpactOscillator, require_one_stop
 from contact.sensitivity.change import Change, Sensitivities
 from contact.sensitivity.replay import Replay, deviation_rates_at_strobe

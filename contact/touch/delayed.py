@@ -33,8 +33,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from beam.parameters import final, require, require_within
-from beam.record import record
+from beam.parameters import final, record, require, require_within
 from contact.errors import NotPeriodic
 from contact.flight.modal_flow import free_flow
 from contact.flight.numbers import COSINE, DECAY, LOAD, SQUARE, WEIGHT

@@ -16,8 +16,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from beam.parameters import InvalidValue, final, require_within
-from beam.record import record
+from beam.parameters import InvalidValue, final, record, require_within
 from contact.flight.elementary import EPS
 from contact.laws import POWER, ContactLaw
 from contact.restitution import damping_ratio

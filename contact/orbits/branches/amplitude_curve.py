@@ -8,8 +8,7 @@ import math
 from collections.abc import Iterator
 from contextlib import suppress
 
-from beam.parameters import Array
-from beam.record import record
+from beam.parameters import Array, record
 from contact.errors import BranchEnded, ContactError
 from contact.orbits.branches.branch import SHORTER, Branch, Leg, branch_of, walk
 from contact.orbits.branches.curve import Curve, grazes

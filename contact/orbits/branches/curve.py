@@ -12,8 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from beam.parameters import Array, Refusal
-from beam.record import record
+from beam.parameters import Array, Refusal, record
 from contact.errors import ContactError
 from contact.orbits.families.newton import CurvePoint, Equations, Iterate, newton
 from contact.orbits.families.touch_orbit import PeriodicOrbit, peaks

@@ -19,8 +19,7 @@ from dataclasses import field, replace
 
 import numpy as np
 
-from beam.parameters import Array
-from beam.record import record
+from beam.parameters import Array, record
 from contact.errors import ContactError
 from contact.orbits.branches.curve import Curve, why_no_neighbours
 from contact.orbits.families.newton import CurvePoint

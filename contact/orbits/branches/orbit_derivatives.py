@@ -12,8 +12,7 @@ from functools import cached_property
 
 import numpy as np
 
-from beam.parameters import Array, require_kind
-from beam.record import record
+from beam.parameters import Array, record, require_kind
 from contact.errors import NoDerivative
 from contact.orbits.families.equations import STEEPEST, drive_of, shoot, sizes_of, slopes_of, tip_slopes
 from contact.orbits.families.touch_orbit import PeriodicOrbit

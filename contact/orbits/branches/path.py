@@ -11,8 +11,7 @@ from functools import cached_property, partial
 
 import numpy as np
 
-from beam.parameters import Array, require, require_kind, require_within
-from beam.record import record
+from beam.parameters import Array, record, require, require_kind, require_within
 from contact.errors import NotPeriodic
 from contact.flight.modal_flow import steady_motion
 from contact.orbits.branches.branch import Branch, branch_of

@@ -12,8 +12,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from beam.parameters import require, require_array, require_within, shown
-from beam.record import record
+from beam.parameters import record, require, require_array, require_within, shown
 from contact.flight.modal_flow import free_flow
 from contact.flight.variation import variation
 from contact.orbits.families.single_impact import Kick, SingleImpactFamily, SingleImpactOrbit

@@ -14,8 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from beam.parameters import Array
-from beam.record import record
+from beam.parameters import Array, record
 from contact.errors import NotPeriodic
 from contact.orbits.families.touch_orbit import PeriodicOrbit
 

@@ -13,8 +13,7 @@ from functools import cached_property
 
 import numpy as np
 
-from beam.parameters import Array, require, require_kind, require_whole, require_within
-from beam.record import record
+from beam.parameters import Array, record, require, require_kind, require_whole, require_within
 from contact.errors import NotPeriodic
 from contact.orbits.families.equations import STEEPEST, driven_at, shoot, sizes_of
 from contact.orbits.families.kick import KickFamily

@@ -12,8 +12,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from beam.parameters import Array
-from beam.record import record
+from beam.parameters import Array, record
 from contact.errors import ContactError
 from contact.flight.crossing import CROSSES, FREE, first_crossing
 from contact.flight.modal_flow import steady_motion

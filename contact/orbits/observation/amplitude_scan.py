@@ -25,8 +25,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from beam.parameters import InvalidValue, require_array, require_whole
-from beam.record import record
+from beam.parameters import InvalidValue, record, require_array, require_whole
 from contact.engine.event_loop import DONE
 from contact.engine.start import failure
 from contact.flight.numbers import Numbers

@@ -16,8 +16,7 @@ import math
 from dataclasses import replace
 from typing import Any, Generic, TypeVar
 
-from beam.parameters import require_kind, require_whole, require_within
-from beam.record import record
+from beam.parameters import record, require_kind, require_whole, require_within
 from contact.errors import BranchEnded, ContactError
 from contact.laws import NEWTON
 from contact.maps.nordmark import NordmarkMap

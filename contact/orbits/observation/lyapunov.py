@@ -15,8 +15,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from beam.parameters import Array, require_whole
-from beam.record import record
+from beam.parameters import Array, record, require_whole
 from contact.errors import NoDerivative, NotPeriodic
 from contact.maps.protocol import DifferentiableMap, require_map
 from contact.orbits.observation.repetition import require_orbit

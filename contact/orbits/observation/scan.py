@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING, Generic, TypeVar
 
 import numpy as np
 
-from beam.parameters import require, require_array, require_kind, require_whole
-from beam.record import record
+from beam.parameters import record, require, require_array, require_kind, require_whole
 from contact import plots
 from contact.errors import ContactError
 from contact.maps.protocol import StrobedMap, require_map

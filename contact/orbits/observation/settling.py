@@ -19,8 +19,7 @@ from typing import Any, Generic, TypeVar
 
 import numpy as np
 
-from beam.parameters import Refusal, require_whole, require_within
-from beam.record import record
+from beam.parameters import Refusal, record, require_whole, require_within
 from contact.errors import ContactError
 from contact.impacts import deviations
 from contact.maps.protocol import require_map

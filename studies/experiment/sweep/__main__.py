@@ -17,7 +17,7 @@ KEY is any number of a scene (--dump-scene lists them), or frequency [Hz], exces
 Every finished column is kept (``studies.shell.sweep``): the same command goes on; --fresh begins anew.
 
 Run:     python -m studies sweep [--over KEY=FROM:TO:N] [--over KEY=FROM:TO:N] [--start up]
-Writes:  sweep.csv (one row a cell), sweep.npz (arrays on the model.grid), sweep.png
+Writes:  sweep.csv (one row a cell), sweep.npz (arrays on the grid), sweep.png
 """
 
 from collections.abc import Mapping, Sequence
@@ -86,7 +86,7 @@ def in_words(values: Values) -> str:
 
 
 def rows_of(swept: Sequence[Values], cells: Mapping[str, np.ndarray]) -> list[Cell]:
-    """The cells in the order of the model.grid, the first axis fastest."""
+    """The cells in the order of the grid, the first axis fastest."""
     columns, rows = [values.ravel().tolist() for values in cells.values()], list[Cell]()
     for at, *row in zip(swept, *columns, strict=True):
         numbers = dict(zip(cells, row, strict=True))

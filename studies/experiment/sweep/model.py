@@ -188,7 +188,7 @@ def settled_cell(oscillator: ImpactOscillator, state: State | None, most: int) -
 
 def column_of(cells: Sequence[Values], scene: Scene, start: str, fixed: Values) -> Column:
     """The numbers of some cells, arrays of one length; m and impacts are -1 in a cell that failed."""
-    found, state, step = list[dict[str, Any]](), None, -1 if start == "down" else 1
+    found, state, step = list[dict[str, object]](), None, -1 if start == "down" else 1
     for cell in ({**fixed, **swept} for swept in cells[::step]):
         try:
             oscillator = oscillator_at(scene, cell)
