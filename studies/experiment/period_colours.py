@@ -5,7 +5,6 @@ neighbouring periods and period doublings always differ; every region that is la
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -62,13 +61,15 @@ def colours_of(period: np.ndarray, values: np.ndarray, colours: Sequence[str] = 
     return found
 
 
-def key_of_periods(on: Axes | Figure, period: np.ndarray, struck: np.ndarray, **place: Any) -> None:
+def key_of_periods(on: Axes | Figure, period: np.ndarray, struck: np.ndarray, **place: plotting.Look) -> None:
     """The colours of the periods that occur; `struck` is 0 without impacts, otherwise the period."""
     colours = {NAMES[m]: PERIODS[m] for m in np.unique(np.minimum(struck[struck > 0], LAST)).tolist()}
     key(on, "period m", colours, bool(np.any(period < 0)), **place)
 
 
-def key(on: Axes | Figure, title: str, colours: Mapping[str, str], failed: bool, **place: Any) -> None:
+def key(
+    on: Axes | Figure, title: str, colours: Mapping[str, str], failed: bool, **place: plotting.Look
+) -> None:
     """The colours of a row of panels, by default right of it; with what all rows have in common."""
     known = {**colours, "no impact": "white", "no period": NONE, **({"failed": FAILED} if failed else {})}
     marks = [Patch(facecolor=colour, edgecolor="0.3", linewidth=0.4) for colour in known.values()]

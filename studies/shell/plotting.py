@@ -63,7 +63,8 @@ NOTE = 7.0
 EXCESS, HYSTERESIS = "excess $F/F_g - 1$", "hysteresis $1 - F_m/F_g$"
 """Names of the two quantities that most axes show."""
 
-Style = dict[str, Any]
+Look = Any  # a property of what matplotlib draws
+Style = dict[str, Look]
 Array = NDArray[np.float64]
 
 UP: Style = {"color": BLUE, "markersize": 1.3, "zorder": 3}
