@@ -3,8 +3,8 @@ From a modal test to impacts
 ============================
 
 A modal test of a structure gives poles and residues.  `ModalModel.from_residues` turns them into the modes
-that impacts need.  Two tests are made: a hammer hits the tip, and a shaker moves the base.  Here a computed
-cantilever takes the place of the structure, so that the answer is known.
+that impacts need.  There are two tests: a hammer hits the tip, and a shaker moves the base.  This example
+simulates both on a computed cantilever, so that the true modes are known.
 """
 
 # %%
@@ -31,8 +31,8 @@ strip = cantilever(length=0.3, section=section, tip=Tip(mass=0.01))
 true = reduce(natural_modes(assemble(strip), 12), ConstantRatio(ratio=0.01))
 
 # %%
-# A program for modal analysis gives a complex pole and two complex residues for each mode.  The residues of
-# this test have noise of 1 %.
+# A program for modal analysis gives a complex pole and two complex residues for each mode.  Each
+# residue has a random error of about 1 %.
 noise = 1 + 0.01 * np.random.default_rng(3).standard_normal((2, 4))
 seen = true.truncated(4)
 damped = np.sqrt(seen.omega**2 - seen.decay_rate**2 / 4)

@@ -4,8 +4,8 @@ A whole branch of orbits
 
 A scan of the amplitude shows the orbits on which a motion settles.  The branch on which they lie has unstable
 orbits too.  It begins at grazing with impacts of zero speed, and goes down to the fold.  There the stable
-orbits begin, and with them the part that a scan can see.  Beyond the last event the orbits would touch the
-stop a second time, so that they are no motions of the spring.
+orbits begin.  A scan can see only these.  Beyond the last event the computed orbits pass through the stop, so
+that they are not admissible.
 """
 
 # %%
@@ -25,7 +25,7 @@ spring = ImpactOscillator(
 )
 
 # %%
-# `follow` needs the family of orbits and no start: it looks for one, and follows the branch both ways.
+# `follow` finds a first orbit of the family by itself, and follows the branch both ways.
 branch = follow(Shooting(oscillator=spring, m=4))
 print(branch)
 

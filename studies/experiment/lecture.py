@@ -3,13 +3,12 @@
 Computed with all modes, at one drive frequency:
 
     settings    amplitudes of the base at which impacts begin, and end when it is lowered again
-    table       impacts in how many shakes, over a scan up and down
+    table       impacts in so many shakes, for a rising and a falling amplitude
     slides      what grazing is, and the orbit diagram, in 16:9 whatever the --style
-
     film        one period of the orbit at --excess, slow at its impacts
 
-An amplitude is the largest displacement of the base.  Settings are rounded up where impacts begin, and down
-where they end.
+An amplitude is the largest displacement of the base.  The setting at which
+impacts begin is rounded up, and the one at which they end is rounded down.
 
 Run:     python -m studies lecture --scene steel_ruler [--frequency HZ] [--excess E] [--frames 0]
 Writes:  lecture.txt, seen.csv, slide_1.png, slide_2.png, motion.gif, motion.pvd; motion.mp4 (extra `video`)
@@ -42,7 +41,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 STROBES, SHAKES = 64, 8  # shakes in the orbit diagram, and against time
-FIRST_STEP, GROWTH, HALVINGS, LOWEST = 1e-4, 0.03, 7, -0.6
+FIRST_STEP, GROWTH, HALVINGS, LOWEST = 1e-4, 0.03, 4, -0.6
 """Of the way down: first step, steps over the way gone, halvings of the last step, and end [excess]."""
 COARSE, SHARE = 2, 0.02  # decimals of a shaker in mm; largest step of a setting over the amplitude
 
@@ -78,16 +77,16 @@ def seen_in(way: str, diagram: Diagram, grazing: float) -> Iterator[Seen]:
 
 
 def lowered(strobed: StroboscopicMap, state: State, begins: float, cycles: int) -> float:
-    """Lower the amplitude slowly from the excess `begins`; returns the last excess with impacts.
+    """Lower the amplitude slowly from the excess `begins`; returns about the last excess with impacts.
 
-    Steps grow with the way gone, and the one in which impacts end is halved `HALVINGS` times.  NaN if there
-    are impacts down to `LOWEST`.
+    Steps grow with the way gone, and the one in which impacts end is halved `HALVINGS` times.  The least that
+    is returned is `LOWEST`.
     """
     excess, step, halved = begins, FIRST_STEP, 0
     while halved <= HALVINGS:
         lower = excess - step
         if lower < LOWEST:
-            return math.nan
+            return LOWEST
         after = settle(strobed.at(lower), state, most_cycles=cycles)
         if after.impacts:
             excess, state = lower, after.end
@@ -103,7 +102,7 @@ def lecture(
     run: Run,
     *,
     excess: Annotated[
-        float, "amplitude over grazing, less one, of the orbit that is filmed", Within(-1, 1e6, open=True)
+        float, "amplitude of the film over the grazing amplitude, minus 1", Within(-1, 1e6, open=True)
     ] = letter.TIME_TRACE_EXCESS,
     frequency: Annotated[float | None, "drive frequency (Hz); by default one of the scene", HERTZ] = None,
     frames: Annotated[int, "frames of the film; 0: no film", Within(0, MOST_FRAMES)] = 120,
@@ -118,9 +117,8 @@ def lecture(
     begins = math.ceil(grazing * 10.0**places) / 10.0**places
     at_excess = {"begins": begins / grazing - 1.0, "filmed": excess}
     orbits = {name: onset_orbit(strobed, e, most_cycles=cycles) for name, e in at_excess.items()}
-    last = grazing * (1.0 + lowered(strobed, orbits["begins"].end, at_excess["begins"], cycles))
-    ends = math.floor((last - 0.02 * abs(grazing - last)) * 10.0**places) / 10.0**places
-    reach = max(scene.scan.narrowest, abs(np.nan_to_num(last, nan=0.9 * grazing) / grazing - 1.0))
+    lowest = lowered(strobed, orbits["begins"].end, at_excess["begins"], cycles)
+    reach = max(scene.scan.narrowest, abs(lowest if lowest > LOWEST else BELOW))
     points = min(scene.scan.points, 21) if run.quick else scene.scan.points
     farthest = 1.05 * max(reach, *at_excess.values())
     near, far = np.linspace(-1.4 * reach, reach, points), np.linspace(reach, farthest, points // 4)
@@ -128,6 +126,9 @@ def lecture(
     scans = up_and_down(strobed, values, observe=strobed.tip, settle_cycles=cycles, record_cycles=STROBES)
     for failure in (one for diagram in scans.values() for one in diagram.failures):
         run.failed("scan", failure)
+    hits = scans["down"].excess[scans["down"].impacts > 0]
+    last = grazing * (1.0 + (hits.min(initial=at_excess["begins"]) if lowest > LOWEST else math.nan))
+    ends = last if math.isnan(last) else math.ceil(last * 10.0**places - 1.0) / 10.0**places
     seen = {name: in_words(one.m, one.impacts) + f" (p{one.m})" * (one.m > 1) for name, one in orbits.items()}
     mm = {"grazing": grazing, "begins": begins, "last": last, "ends": ends, "gap": 1e3 * scene.stop.gap_m}
     mm["filmed"] = grazing * (1.0 + excess)
@@ -170,21 +171,21 @@ def sentences(
     size = 1e-3 * begins * (2.0 * math.pi * hz) ** 2 / g
     ends = f"Lower it slowly to {mm['ends']:.{places}f} mm: the impacts end."
     exact = f"More exactly, impacts begin at {mm['grazing']:.{places + 2}f} mm"
-    exact += f", and end at {mm['last']:.{places + 2}f} mm" if math.isfinite(apart) else ""
+    exact += f", and end below {mm['last']:.{places + 2}f} mm" if math.isfinite(apart) else ""
     small = f"This hysteresis of {apart:.2g} mm is too small for steps of {10.0**-places:g} mm."
     return [
         f"Clamp the {spring_in_words(scene)}{free}. Plucked, it vibrates at {1.0 / period:.2f} Hz.",
-        f"Fix the plate to the clamp, {mm['gap']:.2f} mm from the resting ball: both are shaken together.",
+        f"Fix the plate to the clamp, {mm['gap']:.2f} mm from the ball at rest. The shaker moves both.",
         f"Shake the clamp at {hz:g} Hz. Wait about {wait:.0f} s at each amplitude.",
         f"Raise the amplitude slowly to {begins:.{places}f} mm: the ball begins to hit the plate, "
         f"with {seen['begins']}.",
-        f"That is {2.0 * begins:.{places}f} mm from peak to peak, with a peak acceleration of {size:.3g} g.",
+        f"This is {2.0 * begins:.{places}f} mm from peak to peak, with a peak acceleration of {size:.3g} g.",
         ends
         if math.isfinite(apart)
         else f"Lower it slowly to {-100.0 * LOWEST:.0f} % less: the impacts go on.",
         f"{exact}.",
         *([small] if apart < 10.0**-places else []),
-        f"At {mm['filmed']:.{places}f} mm the audience sees: {seen['filmed']}.",
+        f"At {mm['filmed']:.{places}f} mm, as in the film, the audience sees: {seen['filmed']}.",
     ]
 
 

@@ -35,7 +35,7 @@ def test_the_settings_are_right_by_another_route_and_the_slides_are_wide(run_stu
     ]
     said += [
         f"to {mm['ends']:.2f} mm: the impacts end",
-        f"and end at {mm['last']:.4f} mm",
+        f"and end below {mm['last']:.4f} mm",
         "too small for steps",
     ]
     said += ["180 mm free", "8.00 mm", "p5", f"vibrates at {model.frequencies_hz[0]:.2f} Hz"]

@@ -2,8 +2,8 @@
 
 Claim (letter 1996): the control parameters, amplitude and frequency, decide the settled motion.  So do the
 numbers of the spring and of the stop.  In each cell the motion settles from rest, or from the cell before it
-as in a slow change on a rig (--start up, --start down, along the first key).  Steps next to grazing must be
-small, lest the step itself makes the first touch.
+as in a slow change on a rig (--start up, --start down, along the first key).  Near grazing use small steps: a
+large one can cause an impact by itself.
 
     period m         drive periods after which the motion repeats; 0: none up to 64
     impacts          in one period, on all stops; the scene may have several, [[stops]]
@@ -47,9 +47,14 @@ def sweep(
     run: Run,
     *,
     over: Annotated[tuple[str, ...], "one or two KEY=FROM:TO:N, or ...:N:log"] = ("excess=-0.02:0.06:41",),
-    start: Annotated[Literal["rest", "up", "down"], "of a motion: from rest, or carried along"] = "rest",
+    start: Annotated[
+        Literal["rest", "up", "down"],
+        "of a cell: at rest, or from the cell before, as the first key rises or falls",
+    ] = "rest",
     frequency: Annotated[float | None, "drive frequency (Hz), as in time_trace by default", HERTZ] = None,
-    excess: Annotated[float | None, "F/F_g - 1 (0.013)", Within(-1, 1e6, open=True)] = None,
+    excess: Annotated[
+        float | None, "drive amplitude over grazing amplitude, minus 1 (0.013)", Within(-1, 1e6, open=True)
+    ] = None,
     amplitude: Annotated[float | None, "of the base (m)", Within(0, 1e3, "m", open=True)] = None,
     fresh: Annotated[bool, "forget what is stored and begin anew"] = False,
 ) -> Mapping[str, object]:
