@@ -183,8 +183,8 @@ class ModalModel:
         poles : array_like, shape (n_modes,)
             Poles lambda_k = -c_k/2 + i omega_dk = omega_k (-zeta_k + i sqrt(1 - zeta_k^2)) [rad/s].
         force_residues, base_residues : array_like, shape (n_modes,)
-            Complex residues over a force on the tip [m/(N s), for a displacement], and over the acceleration
-            of the base [s]. The motion of the tip may be absolute or relative to the base.
+            Complex residues of two tests: with a force on the tip [m/(N s), for a displacement], and with an
+            acceleration of the base [s]. The motion of the tip may be absolute or relative to the base.
         response : {"displacement", "velocity", "acceleration"}
             What both tests measured.
         static_compliance, tip_mass : float, optional
@@ -208,7 +208,7 @@ class ModalModel:
         Notes
         -----
         A response is the sum of R_k/(i w - lambda_k) and conjugates. R_k = phi_k^2/(2 i omega_dk) over a
-        force, and -Gamma_k phi_k/(2 i omega_dk) over an acceleration. A derivative multiplies by lambda_k.
+        force, and -Gamma_k phi_k/(2 i omega_dk) over an acceleration. For a velocity R_k is times lambda_k.
 
         Examples
         --------

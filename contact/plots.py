@@ -134,7 +134,7 @@ def branch(
     admissible: ArrayLike,
     **look: Look,
 ) -> Axes:
-    """Draw a branch of orbits in its order: stable, unstable, and pale dots for what is no motion.
+    """Draw a branch of orbits in its order: stable, unstable, and as pale dots what is not admissible.
 
     Parameters
     ----------

@@ -140,7 +140,7 @@ class Trajectory:
     def save(self, path: str | Path) -> None:
         """Write every number of the motion into an ``.npz`` file, for `load`.
 
-        ValueError is raised for another ending; `to_csv` writes a table for other programs.
+        ValueError is raised if the name does not end in ``.npz``; `to_csv` writes a table for other programs.
         """
         words = "it must end with .npz; for a table use to_csv of the trajectory or of its impacts"
         require(str(path).endswith(".npz"), "path", f"is {shown(str(path))}; {words}")

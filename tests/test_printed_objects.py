@@ -77,6 +77,6 @@ def test_defaults_long_arrays_and_long_records_are_cut():
     assert text == "Many(first=1.5 m, second=3 s, row=float64 of shape (99,), 0 to 10000 N)"
     model = ModalModel(omega=[154, 960], decay_rate=[3.6, 20], phi=[8, 9], participation=[0.1, 0.05])
     text = repr(Many(first=1.5, row=np.full(9, np.nan), model=model))
-    assert "model=ModalModel(omega=(154, 960) rad/s, decay_rate=(3.6, 20) 1/s, ...)" in text
+    assert "model=ModalModel(omega=(154, 960) rad/s, decay_rate=(3.6, 20) 1/s, points={tip}, ...)" in text
     assert re.findall(r"<th>(\w+ \[.*?\])", model._repr_html_())[0] == "omega [rad/s]"
     assert "<td>960</td><td>20</td><td>9</td><td>0.05</td>" in model._repr_html_()

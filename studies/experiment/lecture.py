@@ -10,7 +10,7 @@ Computed with all modes, at one drive frequency:
 An amplitude is the largest displacement of the base.  The setting at which
 impacts begin is rounded up, and the one at which they end is rounded down.
 
-Run:     python -m studies lecture --scene steel_ruler [--frequency HZ] [--excess E] [--frames 0]
+Run:     python -m studies lecture --scene steel_ruler [--frequency HZ] [--excess E] [--no-film]
 Writes:  lecture.txt, seen.csv, slide_1.png, slide_2.png, motion.gif, motion.pvd; motion.mp4 (extra `video`)
 """
 
@@ -105,7 +105,8 @@ def lecture(
         float, "amplitude of the film over the grazing amplitude, minus 1", Within(-1, 1e6, open=True)
     ] = letter.TIME_TRACE_EXCESS,
     frequency: Annotated[float | None, "drive frequency (Hz); by default one of the scene", HERTZ] = None,
-    frames: Annotated[int, "frames of the film; 0: no film", Within(0, MOST_FRAMES)] = 120,
+    frames: Annotated[int, "frames of the film", Within(1, MOST_FRAMES)] = 120,
+    no_film: Annotated[bool, "draw the slides alone"] = False,
 ) -> Mapping[str, object]:
     """Compute, store and draw."""
     (hz,), _ = conditions(harmonic(scene), {"frequency": frequency, "excess": excess})
@@ -147,7 +148,7 @@ def lecture(
     starts = (below.oscillator, below.steady()), (above.oscillator, orbits["begins"].end)
     traces = {title: trace_of(*start, SHAKES) for title, start in zip(titles, starts, strict=True)}
     draw(run, mm, places, traces, scans)
-    if frames:
+    if not no_film:
         filmed, oscillator = orbits["filmed"], strobed.at(excess).oscillator
         trace = trace_of(oscillator, filmed.end, filmed.m or filming.APERIODIC)
         words = f"at {hz:g} Hz, amplitude {mm['filmed']:.{places}f} mm: {seen['filmed']}"

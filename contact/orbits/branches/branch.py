@@ -78,11 +78,11 @@ class Branch:
     def plot(self, axes: Axes | None = None, **look: plots.Look) -> Axes:
         """Draw the approach speed [mm/s] of the orbits against the excess, or the parameter of a path.
 
-        Stable orbits are solid and unstable ones dashed.  Pale dots are orbits that are not admissible, as
-        they would touch a second time.  Marks name the events.  The picture of a branch over the excess ends
-        at twice the distance of its farthest event from grazing, and at slow touches; `set_xlim` and
-        `set_ylim` show more.  It draws on `axes` of matplotlib, or makes a figure, and returns the axes;
-        `look` are properties of the lines.
+        Stable orbits are solid and unstable ones dashed.  Orbits that are not admissible are pale dots: they
+        pass through the stop between their impacts.  Marks name the events.  The axes extend to twice the
+        excess of the farthest event, and leave out very slow impacts; `set_xlim` and `set_ylim` show more.
+        It draws on `axes` of matplotlib, or makes a figure, and returns the axes; `look` are properties of
+        the lines.
         """
         places = self.parameters or [orbit.excess for orbit in self.orbits]
         flags = [(orbit.stable, orbit.admissible) for orbit in self.orbits]

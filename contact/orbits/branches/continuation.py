@@ -24,7 +24,7 @@ def follow(
     high: float | None = None,
     step: float = 0.1,
 ) -> Branch:
-    """Follow the branch of a family through an orbit, over all approach velocities or between two of them.
+    """Follow the branch of a family through an orbit, over all approach velocities or from `low` to `high`.
 
     With one touch, the approach velocity rises along the branch.  With several touches, it can turn round.
 
@@ -36,7 +36,8 @@ def follow(
         An orbit of the family, from which the branch is followed both ways.  By default one is looked for.
     low, high : float, optional
         Range of the approach velocity of the first touch, which must enclose the start [m/s].  By default
-        1e-6 and 100 times 2 pi f gap, where a touch is a graze, and where the gap hardly matters any more.
+        `low` is 1e-6 times 2 pi f gap, nearly a graze.  `high` is 100 times 2 pi f gap, where the gap hardly
+        matters.
     step : float, optional
         Longest step of arc length, from 1e-9 to 10 [1]; near grazing, of the logarithm of the velocity.
 
@@ -71,7 +72,7 @@ def follow(
     >>> stop, drive = Stop(gap=11.9e-3, law=law), HarmonicDrive(frequency=21.5)
     >>> family = Shooting(oscillator=ImpactOscillator(model=spring, stop=stop, drive=drive), m=4)
     >>> follow(family, family.at_speed(0.6), low=0.2, high=2.0)
-    Branch(26 orbits p4, 17 admissible, 9 of them stable
+    Branch(26 orbits p4, 20 admissible, 9 of them stable
         fold at -0.00730, grazing at 0.0121
         ended_low=range
         ended_high=range)
