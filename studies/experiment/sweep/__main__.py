@@ -51,7 +51,7 @@ def sweep(
         Literal["rest", "up", "down"],
         "of a cell: at rest, or from the cell before, as the first key rises or falls",
     ] = "rest",
-    frequency: Annotated[float | None, "drive frequency (Hz), as in time_trace by default", HERTZ] = None,
+    frequency: Annotated[float | None, "drive frequency (Hz); by default of the scene", HERTZ] = None,
     excess: Annotated[
         float | None, "drive amplitude over grazing amplitude, minus 1 (0.013)", Within(-1, 1e6, open=True)
     ] = None,
@@ -65,7 +65,8 @@ def sweep(
     drive = in_words(fixed)
     run.say(f"{drive}{'; ' * bool(drive)}each motion starts {STARTS[start]}")
     settings = {"over": over, "start": start, "fixed": fixed, "scene": scene.values()}
-    name = "-".join([start, *(f"{axis.name}-{len(axis.values)}" for axis in axes)])
+    parts = [f"{axis.name}-{len(axis.values)}" for axis in axes]
+    name = "-".join([start, *parts, *(f"{each}-{value:g}" for each, value in fixed.items())])
     work = partial(model.column_of, scene=scene, start=start, fixed=fixed)
     swept, size = model.grid({axis.name: axis.values for axis in axes}), len(axes[0].values)
     step = 1 if start == REST and len(axes) == 1 else size  # the cells of a line in one column
@@ -80,6 +81,10 @@ def sweep(
 
     run.figure("sweep", draw(axes, cells, drive), CAPTION)
     findings(run, axes, cells)
+    if unsettled := np.sum(cells["m"] == 0):
+        cycles = scene.scan.settle_cycles
+        words = f"have no period up to 64 within {cycles} drive periods; look longer with"
+        run.say(f"{unsettled} cells {words} --set scan.settle_cycles={10 * cycles}")
     if start != REST:
         run.say(f"cells whose motion starts from rest: {np.sum(~cells['carried'] & (cells['m'] >= 0))}")
     return {"rows": rows, "modes": scene.kept_modes, "start": start, **fixed}

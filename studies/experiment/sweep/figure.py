@@ -52,6 +52,9 @@ def draw(axes: Sequence[Axis], cells: Mapping[str, np.ndarray], title: str) -> F
         known, scale = ALL[axis.name], "log" if axis.log else "linear"
         for panel in row:
             panel.set(**{f"{way}scale": scale})
+            if not axis.log:
+                panel.locator_params(axis=way, nbins=5)
+                panel.ticklabel_format(axis=way, scilimits=(-2, 4))
             ruler, words = getattr(panel, f"{way}axis"), known.meaning if axis.name in DRIVE else axis.name
             plotting.label(ruler, words, known.unit)
     key_of_periods(figure, period, struck, loc="outside lower center", ncols=8)

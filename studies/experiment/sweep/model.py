@@ -59,10 +59,10 @@ def axis_of(text: str) -> Axis:
     """The axis in KEY=FROM:TO:N or KEY=FROM:TO:N:log."""
     name, _, span = (part.strip() for part in text.partition("="))
     if name not in DRIVE and "." not in name:
-        raise InvalidValue(f"over is {shown(text)}; it must name a key of a scene, {' or '.join(DRIVE)}")
+        raise InvalidValue(f"--over is {shown(text)}; it must name a key of a scene, {' or '.join(DRIVE)}")
     known = DRIVE.get(name) or KEYS[".".join(split(name))]
     if name.partition(".")[0] in UNUSED or type(known.default) not in (int, float):
-        raise SceneError(name, "cannot be swept; over needs a key that is a number and moves the beam")
+        raise SceneError(name, "cannot be swept; --over needs a key that is a number and moves the beam")
     try:
         first, last, count, *form = span.replace(" ", "").split(":")
         low, high, number = *sorted([float(first), float(last)]), int(count)
@@ -72,7 +72,7 @@ def axis_of(text: str) -> Axis:
     except ValueError:
         words = "it must be KEY=FROM:TO:N or KEY=FROM:TO:N:log, FROM and TO different, with :log above 0"
         words += f", and N a whole number from 2 to {MOST_CELLS}"
-        raise InvalidValue(f"over is {shown(text)}; {words}") from None
+        raise InvalidValue(f"--over is {shown(text)}; {words}") from None
     values = (np.geomspace if form else np.linspace)(low, high, number).tolist()
     for value in values:
         known.checked(name, value)
@@ -92,10 +92,14 @@ def plan_of(scene: Scene, options: Mapping[str, Any]) -> tuple[list[Axis], dict[
     fixed = {name: options[name] for name in DRIVE if options[name] is not None}
     names = [axis.name for axis in axes] + list(fixed)
     sizes, cells = {"excess", "amplitude"} & {*names}, math.prod(len(axis.values) for axis in axes)
-    if not 1 <= len(axes) <= 2 or len({*names}) < len(names) or len(sizes) > 1 or cells > MOST_CELLS:
-        words = "over takes one key or two (by default the excess), each number is swept or given once"
-        words += f", excess and amplitude exclude each other, and at most {MOST_CELLS} cells are computed"
-        raise InvalidValue(f"over and the options name {', '.join(names)}, {cells} cells; {words}")
+    rules = {
+        "--over must name one key or two": not 1 <= len(axes) <= 2,
+        "each number must be swept or given once": len({*names}) < len(names),
+        "excess (which is swept by default) and amplitude exclude each other": len(sizes) > 1,
+        f"at most {MOST_CELLS} cells are computed, not {cells}": cells > MOST_CELLS,
+    }
+    for words in (rule for rule, broken in rules.items() if broken):
+        raise InvalidValue(f"--over and the options name {', '.join(names)}; {words}")
     if not sizes:
         fixed["excess"] = letter.TIME_TRACE_EXCESS
     if "frequency" not in names:

@@ -119,7 +119,7 @@ class ModalDataKeys:
     frequencies_hz: tuple[float, ...] = key((), "Hz", "undamped natural frequencies")
     decay_rates_per_s: tuple[float, ...] = key((), "1/s", "c of each mode")
     damping_ratios: tuple[float, ...] = key(
-        (), "1", "c/(2 omega) of each mode, in place of decay_rates_per_s", low=0.0
+        (), "1", "c/(2 omega) of each mode, in place of decay_rates_per_s", low=0.0, high=1.0
     )
     tip_values: tuple[float, ...] = key((), "kg^(-1/2)", "shape of each mode at the tip")
     participation: tuple[float, ...] = key((), "kg^(1/2)", "participation in base motion")
