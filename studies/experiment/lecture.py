@@ -122,8 +122,9 @@ def lecture(
     reach = max(scene.scan.narrowest, abs(lowest if lowest > LOWEST else BELOW))
     points = min(scene.scan.points, 21) if run.quick else scene.scan.points
     farthest = 1.05 * max(reach, *at_excess.values())
-    near, far = np.linspace(-1.4 * reach, reach, points), np.linspace(reach, farthest, points // 4)
-    values = np.unique([*near, *far, at_excess["begins"]])
+    near = np.linspace(-1.4 * reach, reach, points)
+    far = np.linspace(reach, farthest, points // 4) if farthest > 1.5 * reach else ()
+    values = np.unique([*near, *far, *at_excess.values()])
     scans = up_and_down(strobed, values, observe=strobed.tip, settle_cycles=cycles, record_cycles=STROBES)
     for failure in (one for diagram in scans.values() for one in diagram.failures):
         run.failed("scan", failure)
