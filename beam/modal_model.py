@@ -208,7 +208,7 @@ class ModalModel:
         Notes
         -----
         A response is the sum of R_k/(i w - lambda_k) and conjugates. R_k = phi_k^2/(2 i omega_dk) over a
-        force, and -Gamma_k phi_k/(2 i omega_dk) over an acceleration. Residues of a velocity are lambda_k R_k.
+        force, and -Gamma_k phi_k/(2 i omega_dk) over an acceleration; of a velocity, they are lambda_k R_k.
 
         Examples
         --------
