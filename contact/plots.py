@@ -30,7 +30,7 @@ BRANCHES = {
 
 
 def _on(axes: Axes | None) -> Axes:
-    """The axes, or on a new figure."""
+    """The axes, or new ones on a figure of their own."""
     if axes is None:
         from matplotlib import pyplot  # slow to import
 

@@ -16,7 +16,7 @@ def write_csv(path: str | Path, columns: Mapping[str, np.ndarray], units: Mappin
     """Write one line for each row; the first line names the columns and their units."""
     lines = [",".join(f"{name} [{units[name]}]" for name in columns)]
     rows = zip(*(column.tolist() for column in columns.values()), strict=True)
-    lines += [",".join(map(repr, row)) for row in rows]
+    lines += [",".join(map(str, row)) for row in rows]
     Path(path).write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
@@ -26,7 +26,7 @@ def dataframe(columns: Mapping[str, np.ndarray], units: Mapping[str, str]) -> Da
     ImportError is raised if pandas is not installed.
     """
     try:
-        from pandas import DataFrame  # slow to import, and an extra
+        from pandas import DataFrame  # slow to import, and often not installed
     except ImportError as error:
         words = "a DataFrame needs the package pandas: python -m pip install pandas"
         raise ImportError(f"{words}; to_csv writes the same columns without it") from error

@@ -59,7 +59,7 @@ class Seen:
 
 
 def in_words(m: int, impacts: int) -> str:
-    """What a person sees of a settled motion."""
+    """Describe a settled motion in words for an audience."""
     if not impacts:
         return "the ball does not reach the plate"
     count = "one impact" if impacts == 1 else f"{impacts} impacts"

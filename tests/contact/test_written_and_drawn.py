@@ -47,7 +47,7 @@ def test_tables_hold_every_digit(tmp_path):
     RUN.impacts.to_csv(tmp_path / "impacts.csv")
     heading, columns = rows_of(tmp_path / "impacts.csv")
     found = dict(zip(heading, columns, strict=True))
-    assert len(RUN.impacts) > 5
+    assert len(RUN.impacts) > 5 and set(found["kind [1]"]) == {"IMPACT"}
     for name in ("start [s]", "approach [m/s]", "peak_force [N]", "loss [J]"):
         assert np.array_equal(np.array(found[name], dtype=float), getattr(RUN.impacts, name.split()[0]))
 
