@@ -89,7 +89,7 @@ def recorder_for(plan: Plan, n_modes: int, stops: int = 1) -> Recorder:
     touches, passed = new_touches(64, n_modes, stops), plan.last - plan.first  # the log grows by itself
     strobes, counts = np.empty((passed, 2 * n_modes)), np.zeros(passed, dtype=np.int64)
     samples = np.empty((plan.times.size, 2 * n_modes))
-    return Recorder(*touches, strobes, counts, plan.sample_stretch, plan.sample_clock, samples)
+    return Recorder(*touches[:3], strobes, counts, plan.sample_stretch, plan.sample_clock, samples)
 
 
 def grown(recorder: Recorder) -> Recorder:

@@ -12,7 +12,8 @@ from contact import touch
 from contact.errors import ContactError, ContactTooStiff, NotPeriodic
 from contact.flight.crossing import CROSSES, first_crossing
 from contact.flight.modal_flow import propagate
-from contact.flight.variation import force_jump, tangent_flight
+from contact.flight.tip import tip_state
+from contact.flight.variation import all_tip_changes, force_jump, tangent_flight
 from contact.machine.compiled import borrowed, held, kernel, part
 from contact.state import CONTACT, OUTSIDE, SUSTAINED
 from contact.touch.passage import AT_END, RELEASED, STATE, begin, follower
@@ -78,6 +79,16 @@ def fly(vary, u, v, tangent, clock, time):
     propagate(vary.numbers, u, v, time, u, v)
 
 
+@part
+def touch_slopes(vary, clock, u, v, tangent, slopes):
+    """Fill two rows with the derivatives of the time of a touch and of its approach along the tangents."""
+    height, rate = all_tip_changes(vary, tangent, u, v, clock)
+    _height, approach, acceleration = tip_state(vary.numbers, clock, u, v)
+    for j in range(height.size):
+        slopes[0, j] = -height[j] / approach
+        slopes[1, j] = rate[j] + acceleration * slopes[0, j]
+
+
 @kernel
 def flow_from_touch(vary, base, u, v, duration, tangent, touches):
     """Flow for `duration` from a touch at time `base` after a strobe.
@@ -96,8 +107,8 @@ def flow_from_touch(vary, base, u, v, duration, tangent, touches):
         columns no tangents are computed.
     touches : Touches
         With a row for each contact to go through; in the last flight the wall is ignored.  Filled with these
-        contacts, at times since the first one.  The rebound velocity is zero only after an impact that gives
-        none.
+        contacts, at times since the first one, and their slopes if there is room for them.  The rebound
+        velocity is zero only after an impact that gives none.
 
     Returns the outcome: FLOWN, FEWER_TOUCHES, FAILED, TOUCHING or TOO_STIFF.
     """
@@ -114,6 +125,8 @@ def flow_from_touch(vary, base, u, v, duration, tangent, touches):
                 break
             fly(vary, u, v, tangent, run.clock, s)
             run.clock += s
+        if touches.slopes.shape[2] > 0:
+            touch_slopes(vary, run.clock, u, v, tangent, touches.slopes[i])
         outcome = through_touch(vary, run, u, v, end, tangent, touches)
         if outcome == FLOWN and run.clock > end:
             outcome = FAILED

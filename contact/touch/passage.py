@@ -43,6 +43,7 @@ class Touches(NamedTuple):
     marks: np.ndarray  # `MARKS`, shape (1,), or one for each of several stops
     log: np.ndarray  # `TOUCH`, shape (capacity,); empty if no touches are wanted
     log_state: np.ndarray  # (u, v) just before the touch and just after the release, (capacity, 4 n_modes)
+    slopes: np.ndarray  # derivatives of start and approach along tangents, (capacity, 2, columns)
 
     @property
     def states(self) -> Array:
@@ -50,9 +51,10 @@ class Touches(NamedTuple):
         return self.log_state.reshape(len(self.log), 2, 2, -1)
 
 
-def new_touches(capacity: int, n_modes: int, stops: int = 1) -> Touches:
-    """An empty record with a place for `capacity` touches."""
-    return Touches(np.zeros(stops, MARKS), np.zeros(capacity, TOUCH), np.empty((capacity, 4 * n_modes)))
+def new_touches(capacity: int, n_modes: int, stops: int = 1, columns: int = 0) -> Touches:
+    """An empty record with a place for `capacity` touches, and for their derivatives along `columns`."""
+    rows = np.zeros(capacity, TOUCH), np.empty((capacity, 4 * n_modes)), np.empty((capacity, 2, columns))
+    return Touches(np.zeros(stops, MARKS), *rows)
 
 
 @part

@@ -27,9 +27,12 @@ from contact.orbits import Change, Event, PeriodicOrbit, Shooting
 GAP = 0.01  # m
 
 
-def random_oscillator(rng: np.random.Generator) -> ImpactOscillator:
-    """One to six modes under one of the five laws; under `DelayedRestitution` one."""
-    name, unit = rng.choice(["newton", "linear", "hertz", "hunt-crossley", "delayed"]), 150.0
+FIVE = ("newton", "linear", "hertz", "hunt-crossley", "delayed")
+
+
+def random_oscillator(rng: np.random.Generator, laws: Collection[str] = FIVE) -> ImpactOscillator:
+    """One to six modes under one of the laws; under `DelayedRestitution` one."""
+    name, unit = rng.choice([*laws]), 150.0
     n = 1 if name == "delayed" else int(rng.integers(1, 7))
     omega = unit * np.append(1.0, np.sort(rng.uniform(1.2, 30.0, n - 1)))
     decay = 2.0 * 10.0 ** rng.uniform(-2.7, -0.8, n) * omega
@@ -45,15 +48,16 @@ def random_oscillator(rng: np.random.Generator) -> ImpactOscillator:
         "hertz": contact.HertzContact(stiffness=hertz),
         "hunt-crossley": contact.HuntCrossley(stiffness=hertz, dissipation=chi),
         "delayed": DelayedRestitution(restitution=e, delay=10.0 ** rng.uniform(-3.0, -0.5) / w),
+        "power": contact.PowerContact(stiffness=stiffness / GAP**0.25, exponent=1.25, damping=dashpot),
     }[name]
     return modes_on_stop(omega, decay, phi, gamma, law=law, gap=GAP, drive=w / (2.0 * np.pi))
 
 
-def random_family(rng: np.random.Generator) -> tuple[Shooting, PeriodicOrbit]:
+def random_family(rng: np.random.Generator, laws: Collection[str] = FIVE) -> tuple[Shooting, PeriodicOrbit]:
     """A settled motion of one to four touches, mostly several, in one to five drive periods."""
     fewest = int(rng.random() < 0.9) + 1
     while True:
-        oscillator = random_oscillator(rng).with_excess(10.0 ** rng.uniform(-2.5, 0.6))
+        oscillator = random_oscillator(rng, laws).with_excess(10.0 ** rng.uniform(-2.5, 0.6))
         strobed = contact.StroboscopicMap(oscillator=oscillator)
         start = strobed.at(-1e-3).steady() if rng.random() < 0.5 else contact.State.rest(oscillator.n_modes)
         try:
@@ -121,6 +125,30 @@ def judged(
                 yield f"{name}: orbit", wrong_orbit(orbit)
 
 
+def events_by_step(family: Shooting, start: PeriodicOrbit, step: float) -> tuple[list[str], list[float]]:
+    """Kinds of the events of a branch and why it ends, and their excess, at steps of this length."""
+    branch = orbits.follow(family, start, low=0.2 * start.speed, high=5.0 * start.speed, step=step)
+    told = [event for event in branch.events if event.kind != "undecided"]  # next to a graze
+    ends = [end if end in ("range", "closed") else "lost" for end in (branch.ended_low, branch.ended_high)]
+    return [*(event.kind for event in told), *ends], [event.orbit.excess for event in told]
+
+
+def wrong_steps(seed: int, number: int, steps: tuple[float, float] = (0.1, 0.025)) -> str:
+    """What `follow` finds otherwise at its default step than at one four times shorter; "" if nothing."""
+    rng = np.random.default_rng([seed, number])
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        family, start = random_family(rng, (*FIVE, "power"))
+        while family.impacts < 2:
+            family, start = random_family(rng, (*FIVE, "power"))
+        (kinds, found), (other, finer) = (events_by_step(family, start, step) for step in steps)
+    if kinds == other and np.allclose(found, finer, rtol=1e-6, atol=1e-6):
+        return ""
+    law = f"{type(family.oscillator.stop.law).__name__}, {family.oscillator.n_modes} modes"
+    orbit = f"p{family.m} with {family.impacts} touches, {law}"
+    return f"family {number} of seed {seed} ({orbit}): {kinds} at {found}, but {other} at {finer}"
+
+
 QUICK = ("fold_of", "first_event", "follow")
 ALL = (*QUICK, "path in amplitude", "path")
 
@@ -145,8 +173,13 @@ if __name__ == "__main__":
     for option, default in (("--families", 300), ("--first", 0), ("--seed", 1)):
         parser.add_argument(option, type=int, default=default)
     parser.add_argument("--quick", action="store_true")
+    parser.add_argument("--steps", action="store_true")
     options, total = parser.parse_args(), Counter[str]()
     for number in range(options.first, options.first + options.families):
+        if options.steps:
+            wrong = wrong_steps(options.seed, number)
+            print(wrong or f"family {number}: the same", flush=True)
+            continue
         counted, sentences = judged_family(options.seed, number, QUICK if options.quick else ALL)
         total += counted
         print(*(f"{sentence}\n" for sentence in sentences), sep="", end="", flush=True)

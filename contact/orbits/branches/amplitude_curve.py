@@ -11,7 +11,7 @@ from contextlib import suppress
 from beam.parameters import Array, record
 from contact.errors import BranchEnded, ContactError
 from contact.orbits.branches.branch import SHORTER, Branch, Leg, branch_of, walk
-from contact.orbits.branches.curve import Curve, grazes
+from contact.orbits.branches.curve import Curve, deadline, grazes
 from contact.orbits.families.newton import CurvePoint, Equations
 from contact.orbits.families.newton_family import NewtonFamily
 from contact.orbits.families.touch_orbit import PeriodicOrbit
@@ -82,9 +82,9 @@ def branch_ended(orbit: PeriodicOrbit, words: str) -> BranchEnded:
     return error
 
 
-def downhill(family: NewtonFamily, start: PeriodicOrbit) -> Iterator[Leg]:
+def downhill(family: NewtonFamily, start: PeriodicOrbit, until: float | None = None) -> Iterator[Leg]:
     """The legs of the branch from `start` towards lower amplitudes."""
-    curve = curve_through(start, family)
+    curve = curve_through(start, family, until)
     first = curve.start()
     first = first if first.rate <= 0.0 else first.oriented(-first.direction)
     return walk(curve, first, LONGEST_STRIDE, FIRST_STRIDE)
@@ -96,11 +96,15 @@ def at_graze(ended: str, last: PeriodicOrbit) -> bool:
     return slow or (ended not in ("range", "closed") and grazes(last))
 
 
-def curve_through(orbit: PeriodicOrbit, family: NewtonFamily) -> AmplitudeCurve:
-    """The curve of a family through `orbit`, over the speeds of a search and from below to above its own."""
+def curve_through(orbit: PeriodicOrbit, family: NewtonFamily, until: float | None = None) -> AmplitudeCurve:
+    """The curve of a family through `orbit`, over the speeds of a search and from below to above its own.
+
+    By default the processor time is that of one call.
+    """
     low, high = (part * family.oscillator.unit_speed for part in (LEAST_SPEED, GREATEST_SPEED))
     low, high = min(low, 0.5 * orbit.speed), max(high, 2.0 * orbit.speed)
-    return AmplitudeCurve(like=orbit, family=family, slowest=low, fastest=high, far=FAR)
+    until = deadline() if until is None else until
+    return AmplitudeCurve(like=orbit, family=family, slowest=low, fastest=high, far=FAR, until=until)
 
 
 def entered(family: NewtonFamily, near: PeriodicOrbit | None = None) -> PeriodicOrbit:
@@ -115,14 +119,14 @@ def entered(family: NewtonFamily, near: PeriodicOrbit | None = None) -> Periodic
 
 
 def whole_branch(
-    family: NewtonFamily, near: PeriodicOrbit | None
+    family: NewtonFamily, near: PeriodicOrbit | None, until: float | None = None
 ) -> tuple[AmplitudeCurve, list[CurvePoint], Branch]:
     """The whole branch with its curve and points.
 
     Raises BranchEnded if there is no orbit to start from, or if the branch is lost on the way.
     """
     here = entered(family, near)
-    curve = curve_through(here, family)
+    curve = curve_through(here, family, until)
     try:
         branch, points = branch_of(curve, curve.start(), LONGEST_STRIDE, LONGEST_STRIDE)
     except ContactError as error:

@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
+from textwrap import shorten
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -18,7 +19,7 @@ import numpy as np
 from beam.record import record
 from contact import plots
 from contact.errors import ContactError
-from contact.orbits.branches.curve import BEND, CROSSING, Curve, grazes
+from contact.orbits.branches.curve import BEND, CROSSING, LATE, Curve, grazes
 from contact.orbits.branches.events import CLOSE, Event, event_at, events_between, refined, with_undecided
 from contact.orbits.families.newton import CurvePoint
 from contact.orbits.families.touch_orbit import NEARLY, PeriodicOrbit
@@ -72,7 +73,7 @@ class Branch:
         return (
             f"Branch({len(self.orbits)} orbits p{self.orbits[0].m}, {kinds}\n"
             f"    {', '.join([*named, *more]) or 'no event'}\n"
-            f"    ended_low={self.ended_low[:WIDE]}\n    ended_high={self.ended_high[:WIDE]})"
+            f"    ended_low={shorten(self.ended_low, WIDE)}\n    ended_high={shorten(self.ended_high, WIDE)})"
         )
 
     def plot(self, axes: Axes | None = None, **look: plots.Look) -> Axes:
@@ -139,19 +140,27 @@ def walk(curve: Curve, first: CurvePoint, longest: float, stride: float) -> Iter
         yield Leg([], [], "range")
         return
     for count in range(MOST_STEPS):
+        if curve.late():
+            yield Leg([], [], LATE)
+            return
         there = curve.next_point(here, step, here.orbit.impacts)
         if isinstance(there, str) and step > SMALLEST:
             step *= 0.5
             continue
         if isinstance(there, str):
             leg = _leg_to_edge(curve, looked, here, there)
+            if curve.late():
+                continue
             yield leg
             if leg.ended:
                 return
             here = looked = leg.points[-1]
             edges, step = [here], SMALLEST
             continue
-        firsts = firsts or [curve.with_first_touch(first, touch) for touch in range(first.orbit.impacts)]
+        started = [
+            curve.with_first_touch(first, touch) for touch in range(0 if firsts else first.orbit.impacts)
+        ]
+        firsts += [point for point in started if point is not None]
         closing = _closing(firsts, here, there) if count > 3 else None
         if closing is not None and closing.direction @ there.direction < 0.0:
             yield Leg([], [], "the branch comes back the other way: a step was too long")
@@ -160,6 +169,8 @@ def walk(curve: Curve, first: CurvePoint, longest: float, stride: float) -> Iter
         ended = "closed" if closing else "range" if there.last else ""
         if ended or np.linalg.norm(there.x - looked.x) > CLOSE:
             leg = _leg_between(curve, looked, there, [*edges, there] if there.last else edges)
+            if curve.late():
+                continue
             edges, looked, ended = [], there, leg.ended or ended
             yield leg._replace(ended=ended)
         if ended:
@@ -231,7 +242,7 @@ def _with_other_touches(curve: Curve, here: CurvePoint) -> CurvePoint | None:
     """
     if not curve.admissible_only:
         return None
-    here = curve.with_first_touch(here, int(np.argmax(here.orbit.approach)))
+    here = curve.with_first_touch(here, int(np.argmax(here.orbit.approach))) or here
     for impacts in (here.orbit.impacts + 1, here.orbit.impacts - 1):
         for length in ACROSS if impacts else ():
             there = curve.next_point(here, length, impacts)

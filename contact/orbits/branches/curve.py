@@ -7,37 +7,50 @@ cross, and only there.  The last unknown has a range, beyond which the curve is 
 """
 
 import math
+import time
 from abc import ABC, abstractmethod
-from dataclasses import replace
+from dataclasses import field, replace
 
 import numpy as np
 
 from beam.parameters import Array, Refusal, record
-from contact.errors import ContactError
+from contact.errors import BranchEnded, ContactError
 from contact.orbits.families.newton import CurvePoint, Equations, Iterate, newton
-from contact.orbits.families.touch_orbit import PeriodicOrbit, peaks
-from contact.simulation import simulate
+from contact.orbits.families.touch_orbit import ALIKE, PeriodicOrbit, peaks
 
 BEND, TWIST, STRAIGHT = 0.3, 0.25, 5e-3
 """Largest angle between the directions of neighbours [rad], also the part of a step by which it may miss.
 Their chord may differ from the mean of both directions by `TWIST` of that angle and `STRAIGHT`.  On a smooth
 curve the difference is of second order in the step, between two curves it is not."""
 
+MOST_SECONDS = 20.0
+LATE = f"{MOST_SECONDS:g} s of processor time are used up"
+"""Processor time of one call.  Branches of the letter's beam take less than two seconds; one on which every
+step fails could take hours."""
+
 SHORT = 1e-9  # length of a chord below which its direction is rounding
-DRIFT = 0.1  # largest change of the time between first and another touch to a neighbour, in drive periods
 
 CROSSING = "orbits that repeat themselves cross the curve"
 
-SLOW, SHALLOW, SPLIT = 1e-3, 1e-6, 1e-5
+SLOW, SHALLOW, SPLIT = 1e-3, 1e-6, 1e-3
 """At a graze: approach velocity over 2 pi f gap of a touch, depth over the gap of a peak, and rebound over
 approach velocity of a touch that splits in two."""
 
 
+def deadline() -> float:
+    """The processor time of this thread at which a call that begins now gives up [s]."""
+    return time.thread_time() + MOST_SECONDS
+
+
 @record
 class Curve(ABC):
-    """A curve of orbits through or near the orbit `like`, whose period and sizes all points share."""
+    """A curve of orbits through or near the orbit `like`, whose period and sizes all points share.
+
+    No point is looked for beyond the processor time `until` of this thread [s].
+    """
 
     like: PeriodicOrbit
+    until: float = field(default_factory=deadline)
 
     @property
     @abstractmethod
@@ -62,12 +75,18 @@ class Curve(ABC):
     def parameter(self, point: CurvePoint) -> float:
         """The parameter at a point."""
 
+    def late(self) -> bool:
+        """Whether the processor time is used up."""
+        return time.thread_time() > self.until
+
     def step_factor(self, x: Array) -> float:
         """Factor of the longest step at `x`, where the unknowns are large."""
         return 1.0
 
     def solve(self, x: Array, normal: Array, impacts: int) -> CurvePoint:
         """The point of the curve next to `x`, in the plane through it across `normal`."""
+        if self.late():
+            raise BranchEnded(detail=LATE)
 
         def pick(there: Array, _: Iterate) -> tuple[float, Array]:
             return float(normal @ (there - x)), normal
@@ -98,6 +117,8 @@ class Curve(ABC):
             there = self.solve(guess, across, impacts).oriented(here.direction)
         except (ContactError, Refusal) as error:
             return str(error)
+        if to_end > length and (there.x[-1] - end) * slope > 0.0:
+            return "the curve bends out of its range"
         if np.linalg.norm(there.x - guess) >= BEND * length:
             return "the curve leaves its tangent"
         why_not = why_no_neighbours(here, there)
@@ -105,15 +126,21 @@ class Curve(ABC):
             why_not = "a touch is gained"
         return why_not or replace(there, last=to_end <= length)
 
-    def with_first_touch(self, here: CurvePoint, touch: int) -> CurvePoint:
-        """The same orbit, started from its touch number `touch`."""
+    def with_first_touch(self, here: CurvePoint, touch: int) -> CurvePoint | None:
+        """The same orbit, started from its touch number `touch`.
+
+        It is None if the orbit is not admissible: its last flight, where the wall is ignored, is another one.
+        """
         if touch == 0:
             return here
-        orbit = here.orbit
-        hit = simulate(orbit.oscillator, orbit.state(), periods=orbit.m).impacts
-        start, clock = hit.deviations_start[touch].ravel(), float(hit.clock[touch])
-        x = self.unknowns(start, clock, float(hit.approach[touch]), here.x)
-        return self.at(x, orbit.impacts)
+        orbit, (log, states) = here.orbit, (here.orbit.record.log, here.orbit.record.states)
+        time, speed = orbit.phase + float(log["start"][touch]), float(log["approach"][touch])
+        try:
+            there = self.at(self.unknowns(states[touch, 0].ravel(), time, speed, here.x), orbit.impacts)
+        except ContactError:
+            return None
+        same = np.abs(there.orbit.approach - np.roll(orbit.approach, -touch)) <= ALIKE * orbit.approach.max()
+        return there if np.all(same) else None
 
 
 def why_no_neighbours(a: CurvePoint, b: CurvePoint) -> str:
@@ -121,17 +148,21 @@ def why_no_neighbours(a: CurvePoint, b: CurvePoint) -> str:
 
     The directions of both must lie along the way from `a` to `b`.
     """
-    if not a.direction @ b.direction > math.cos(BEND):
+    ways, chord = [a.direction, b.direction], b.x - a.x
+    if a.orbit.impacts == b.orbit.impacts > 1:
+        sizes = np.array([[a.orbit.oscillator.period / (2.0 * math.pi)], [a.orbit.approach.max()]])
+        before, after = (np.array([p.orbit.record.log["start"], p.orbit.approach]) for p in (a, b))
+        chord = np.append(chord, (after - before) / sizes)
+        ways = [np.append(p.direction, p.touches / sizes) for p in (a, b)]
+        ways = [way / np.linalg.norm(way) for way in ways]
+    if not ways[0] @ ways[1] > math.cos(BEND):
         return "the curve bends"
-    before, after = (point.orbit.record.log["start"] for point in (a, b))
-    if before.size == after.size and np.max(np.abs(after - before)) > DRIFT * a.orbit.oscillator.period:
-        return "a touch is gained or lost between others"
     if a.orbit.repeats() != b.orbit.repeats():
         return CROSSING
-    chord, mean = b.x - a.x, a.direction + b.direction
+    mean = ways[0] + ways[1]
     part = chord @ mean / (mean @ mean)
     length = float(np.linalg.norm(chord))
-    allowed = STRAIGHT + TWIST * float(np.linalg.norm(b.direction - a.direction))
+    allowed = STRAIGHT + TWIST * float(np.linalg.norm(ways[1] - ways[0]))
     if length > SHORT and not (part > 0.0 and np.linalg.norm(chord - part * mean) <= allowed * length):
         return "the step leads to another curve"
     return ""
@@ -140,10 +171,10 @@ def why_no_neighbours(a: CurvePoint, b: CurvePoint) -> str:
 def grazes(orbit: PeriodicOrbit) -> bool:
     """Whether a touch is about to be lost or to split, or a peak between touches about to become one.
 
-    A touch splits where the tip leaves the stop with no velocity; only a plastic one leaves it so everywhere.
+    A touch that lasts splits where the tip leaves the stop with no velocity.
     """
-    rebound = np.abs(orbit.record.log["rebound"])
-    splits = np.any((rebound > 0.0) & (rebound < SPLIT * orbit.approach))
+    log = orbit.record.log
+    splits = np.any((log["end"] > log["start"]) & (np.abs(log["rebound"]) < SPLIT * orbit.approach))
     if splits or orbit.approach.min() < SLOW * orbit.oscillator.unit_speed:
         return True
     return any(abs(height) < SHALLOW * orbit.oscillator.stop.gap for _, _, height in peaks(orbit))

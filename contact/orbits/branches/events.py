@@ -21,6 +21,7 @@ import numpy as np
 
 from beam.parameters import Array, record
 from contact.errors import ContactError
+from contact.flight.elementary import EPS
 from contact.orbits.branches.curve import Curve, why_no_neighbours
 from contact.orbits.families.newton import CurvePoint
 from contact.orbits.families.touch_orbit import NEARLY, PeriodicOrbit
@@ -48,12 +49,16 @@ class Event:
     """A point on a branch at which its orbits change, such as a fold.
 
     The kind "undecided" says that a number changes sign, but that the event could not be identified.  There
-    are four reasons:
+    are five reasons:
 
     - No orbit is found at the event; then `orbit` is the one before.
     - The orbit is not on the curve of its neighbours.
     - The orbit has no multiplier within 1e-6 of its place at such an event.
     - Another event, or the end of the range, is closer than 1e-6 of arc length.
+    - The number of multipliers outside the unit circle changes otherwise than the events near it say.
+
+    Period doublings and tori are not looked for where the largest multiplier exceeds about 1e8: the
+    multipliers near the unit circle are then rounding.
 
     Parameters
     ----------
@@ -115,6 +120,30 @@ OFF: dict[str, Callable[[np.ndarray], float]] = {
     "grazing": lambda m: 0.0,
 }
 """Distance of the nearest multiplier from its place at each kind of event."""
+
+
+def rounded(orbit: PeriodicOrbit) -> bool:
+    """Whether the multipliers near the unit circle are not known to `CLOSE`, next to such large ones."""
+    return bool(orbit.multipliers.size * EPS * abs(orbit.multipliers[0]) > CLOSE)
+
+
+def accounted(a: CurvePoint, b: CurvePoint, events: Sequence[Event]) -> bool:
+    """Whether the number of multipliers outside the unit circle changes as the events from a to b say.
+
+    It changes by two at a torus, not at a graze, and by one at any other event.  A multiplier within `CLOSE`
+    of the circle may lie on either side of it; an undecided event may change any number.
+    """
+    if rounded(a.orbit) or rounded(b.orbit):
+        return True
+    before, after = (np.abs(point.orbit.multipliers) for point in (a, b))
+    least = np.sum(after > 1.0 + CLOSE) - np.sum(before > 1.0 - CLOSE)
+    most = np.sum(after > 1.0 - CLOSE) - np.sum(before > 1.0 + CLOSE)
+    changes = {0}
+    for event in events:
+        size = {"grazing": 0, "torus": 2}.get(event.kind, 1)
+        changes = {change + sign * size for change in changes for sign in (-1, 1)}
+    undecided = any(event.kind == "undecided" for event in events)
+    return undecided or any(least <= change <= most for change in changes)
 
 
 def passes(here: float, there: float) -> bool:
@@ -192,12 +221,15 @@ def refined(curve: Curve, a: CurvePoint, b: CurvePoint, depth: int = 0) -> list[
 def events_between(curve: Curve, a: CurvePoint, b: CurvePoint, depth: int = 0) -> list[Event]:
     """The events from `a`, itself included, to its neighbour `b`, in their order along the curve.
 
-    An event that is not sound is looked for again in both halves of the way.  A curve with `admissible_only`
-    has its grazes where it ends.
+    If an event is not sound, or if the multipliers change otherwise than the events say, both halves of the
+    way are searched.  A curve with `admissible_only` has its grazes where it ends.
     """
-    between, found = Arc(curve, a, b), list[Event]()
+    between, found, middle = Arc(curve, a, b), list[Event](), None
+    divisible = depth < MOST_HALVINGS and between.length > ASIDE
     for tested, test in TESTS.items():
         kind = tested
+        if kind in ("period doubling", "torus") and (rounded(a.orbit) or rounded(b.orbit)):
+            continue
         if (kind == "grazing" and curve.admissible_only) or not passes(test(a), test(b)):
             continue
         try:
@@ -211,12 +243,17 @@ def events_between(curve: Curve, a: CurvePoint, b: CurvePoint, depth: int = 0) -
             sound = between.on_curve(point) and OFF[kind](point.orbit.multipliers) < CLOSE
         except ContactError:
             point, sound = a, False
-        if not sound and depth < MOST_HALVINGS and between.length > ASIDE:
-            middle = between.middle()
-            if middle is not None:
-                halves = ((a, middle), (middle, b))
-                return [event for c, d in halves for event in events_between(curve, c, d, depth + 1)]
+        middle = between.middle() if divisible and not sound else None
+        if middle is not None:
+            break
         found.append(event_at(curve, kind if sound else "undecided", point))
+    missing = middle is None and not accounted(a, b, found)
+    middle = between.middle() if divisible and missing else middle
+    if middle is not None:
+        halves = ((a, middle), (middle, b))
+        return [event for c, d in halves for event in events_between(curve, c, d, depth + 1)]
+    if missing:
+        found.append(event_at(curve, "undecided", a))
     return sorted(found, key=lambda event: float(np.linalg.norm(event.x - a.x)))
 
 

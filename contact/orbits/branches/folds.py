@@ -11,6 +11,7 @@ import numpy as np
 from beam.parameters import require_array
 from contact.errors import ContactError, NotPeriodic
 from contact.orbits.branches.amplitude_curve import GREATEST_SPEED, branch_ended, downhill, whole_branch
+from contact.orbits.branches.curve import deadline
 from contact.orbits.branches.events import Event
 from contact.orbits.families.kick import SPEEDS
 from contact.orbits.families.newton_family import NewtonFamily, require_family
@@ -84,33 +85,34 @@ def lowest_fold(
     family: NewtonFamily, near: PeriodicOrbit | None = None
 ) -> tuple[PeriodicOrbit | None, list[Event]]:
     """The fold of `fold_of`, or None and the events by which stable orbits end, by falling excess."""
-    fold, losses = _fold_of_these_touches(family, near)
+    until = deadline()
+    fold, losses = _fold_of_these_touches(family, near, until)
     if fold is None or fold.admissible:
         return fold, losses
     try:
         kick = family.kicks.fold()
         if kick is None or kick.kick.impacts == fold.impacts:
             return fold, losses
-        other = _fold_of_these_touches(replace(family, impacts=kick.kick.impacts), None)[0]
+        other = _fold_of_these_touches(replace(family, impacts=kick.kick.impacts), None, until)[0]
     except ContactError:
         return fold, []
     return (other if other is not None and other.admissible else fold), []
 
 
 def _fold_of_these_touches(
-    family: NewtonFamily, near: PeriodicOrbit | None
+    family: NewtonFamily, near: PeriodicOrbit | None, until: float
 ) -> tuple[PeriodicOrbit | None, list[Event]]:
     """The result of `lowest_fold` with as many touches as the family has."""
     require_family(family, near)
     fold: PeriodicOrbit | None = None
     with suppress(ContactError):  # the search of the whole branch says why
         guess = near or fold_of_the_kicks(family)
-        legs = downhill(family, family.at_speed(guess.speed, near)) if guess else ()
+        legs = downhill(family, family.at_speed(guess.speed, near), until) if guess else ()
         events = (event for leg in legs for event in leg.events)
         fold = next((event.orbit for event in events if event.kind == "fold"), None)
     if fold is not None and fold.excess < 0.0:
         return fold, []
-    branch = whole_branch(family, near if fold is None else fold)[2]
+    branch = whole_branch(family, near if fold is None else fold, until)[2]
     folds = branch.of_kind("fold")
     if folds:
         return min(folds, key=lambda orbit: (not orbit.admissible, orbit.excess)), []

@@ -81,7 +81,7 @@ class PathCurve(Curve):
         residual = np.concatenate([miss, [height, orbit.amplitude - here.driven.amplitude]]) / weight
         rows = slopes_of(orbit, flow, several) * self.scale
         p_slope = self.scale * np.eye(x.size)[-1]
-        return Iterate(orbit, residual, rows[:-1] / weight[:, None], p_slope, rows[-1])
+        return Iterate(orbit, residual, rows[:-1] / weight[:, None], p_slope, rows[-1], np.diag(self.scale))
 
 
 def follow_path(

@@ -63,7 +63,7 @@ def shoot(
     """
     oscillator, vary, n, (u, v) = changes.oscillator, changes.variation, start.size, start.reshape(2, -1)
     flow, end = np.eye(n + 2, n + 2 + len(vary.scalars)), np.array([u, v])
-    record = new_touches(impacts, u.size)
+    record = new_touches(impacts, u.size, columns=flow.shape[1])
     outcome = flow_from_touch(vary, phase, end[0], end[1], m * oscillator.period, flow, record)
     if outcome != FLOWN:
         words = f"an orbit of period {m} with {impacts} touches was lost"

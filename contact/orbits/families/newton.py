@@ -32,7 +32,8 @@ class Iterate(NamedTuple):
     """The equations of a curve of orbits at n + 1 unknowns x; the `orbit` from there need not close.
 
     `residual` is scaled, shape (n,), and `rows` are its derivatives with respect to x, (n, n + 1).
-    `parameter_slope` and `speed_slope`, (n + 1,), are the derivatives of parameter and approach speed.
+    `parameter_slope` and `speed_slope`, (n + 1,), are the derivatives of parameter and approach speed, and
+    `start_slope` those of what the slopes of the touches refer to: (u, v, S, C) and parameters.
     """
 
     orbit: PeriodicOrbit
@@ -40,6 +41,7 @@ class Iterate(NamedTuple):
     rows: Array
     parameter_slope: Array
     speed_slope: Array
+    start_slope: Array
 
 
 Equations = Callable[[Array], Iterate]
@@ -49,14 +51,16 @@ Equations = Callable[[Array], Iterate]
 class CurvePoint:
     """A point of a curve of orbits: unknowns `x` and unit vector `direction` along the curve, both (n + 1,).
 
-    `rate` is the derivative of the parameter with respect to the arc length, and `determinant` belongs to the
-    rows of derivatives with the direction below them.  `last` marks the end of the range.
+    `rate` and `touches`, (2, impacts), are the derivatives of the parameter, and of times and approach
+    velocities of the touches, with respect to the arc length.  `determinant` belongs to the rows of
+    derivatives with the direction below them.  `last` marks the end of the range.
     """
 
     x: Array
     direction: Array
     orbit: PeriodicOrbit
     rate: float
+    touches: Array
     determinant: float
     last: bool = False
 
@@ -64,7 +68,8 @@ class CurvePoint:
         """The same point, its direction turned to the side of the vector `other`."""
         if self.direction @ other >= 0.0:
             return self
-        return replace(self, direction=-self.direction, rate=-self.rate, determinant=-self.determinant)
+        turned = dict(direction=-self.direction, rate=-self.rate, touches=-self.touches)
+        return replace(self, determinant=-self.determinant, **turned)
 
 
 def newton(
@@ -102,6 +107,9 @@ def newton(
     direction = across / length
     rate, speed_rate = float(here.parameter_slope @ direction), float(here.speed_slope @ direction)
     orbit = replace(here.orbit, residual=best, slope=rate / speed_rate if speed_rate else math.inf)
+    touches = (orbit.record.slopes @ (here.start_slope @ direction)).T
     # with the direction in place of the last row of the matrix, its determinant grows by the factor `length`
     determinant = float(np.linalg.det(matrix)) * length
-    return CurvePoint(x=x, direction=direction, orbit=orbit, rate=rate, determinant=determinant)
+    return CurvePoint(
+        x=x, direction=direction, orbit=orbit, rate=rate, touches=touches, determinant=determinant
+    )

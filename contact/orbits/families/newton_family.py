@@ -67,9 +67,11 @@ class NewtonFamily:
         here, at = driven_at(self.oscillator, drive)
         orbit, miss, flow = shoot(Sensitivities(oscillator=here), at, start, self.m, self.impacts, speed)
         scale = np.append(self._sizes, speed)
-        closing = flow @ np.vstack([np.eye(n, size), rows]) - np.eye(n, size)
+        start_slope = np.vstack([np.eye(n, size), rows])
+        closing = flow @ start_slope - np.eye(n, size)
         slopes = drive @ rows * scale / (orbit.amplitude * grazing), speed * np.eye(size)[-1]
-        return Iterate(orbit, miss / self._sizes, closing * scale / self._sizes[:, None], *slopes)
+        derivatives = closing * scale / self._sizes[:, None], *slopes, start_slope * scale
+        return Iterate(orbit, miss / self._sizes, *derivatives)
 
     def _solve(self, x: Array, *, speed: float | None = None, excess: float = 0.0) -> PeriodicOrbit:
         """The orbit next to `x` with its approach speed, or with this excess [1]."""
