@@ -13,6 +13,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated
 
+from studies import letter
 from studies.physics.calibration import Targets, calibrate_all, collision_at
 from studies.shell.digits import written
 from studies.shell.scene import Scene, beam_at, harmonic
@@ -42,9 +43,9 @@ def calibrate(scene: Scene, run: Run) -> Mapping[str, object]:
     run.text("calibrated.toml", fitted.dump(), "The scene with the fitted keys, for --scene.")
     collision = collision_at(fitted, targets.frequency_hz, targets.excess)
     amplitude = beam_at(fitted, targets.frequency_hz).grazing_amplitude()
-    run.verdict(
-        "drive_amplitude", "fitted", found=f"{1e3 * amplitude:.3f} mm at grazing, {targets.frequency_hz:g} Hz"
-    )
+    fits = abs(amplitude - letter.DRIVE_AMPLITUDE_M) <= letter.AMPLITUDE_STABILITY_M
+    found = f"{1e3 * amplitude:.3f} mm at grazing, {targets.frequency_hz:g} Hz"
+    run.verdict("drive_amplitude", "fitted" if fits else "differs", found=found)
     same = all(abs(row.after - row.before) <= SMALL * abs(row.before) for row in rows)
     change = "changes no key of the scene by more than a thousandth" if same else "changes the scene"
     run.finding(f"The fit to the four numbers {change}.")

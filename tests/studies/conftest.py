@@ -15,12 +15,29 @@ from matplotlib.figure import Figure
 from page_judge import assert_fit
 
 from beam import ModalModel
+from studies.letter import POINTS
 from studies.shell import plotting
 from studies.shell.page import write_page
 from studies.shell.programs import module_of
 from studies.shell.run import Run
 from studies.shell.scene import Scene, model_of, read_scene
 from studies.shell.study import Study
+
+VERDICTS = {
+    "agrees": "p3 p4 p5 p6 p8 period_adding coexistence chaos last_period bands neighbour_band time_trace "
+    "many_modes restitution_on_orbit secondary universality soft_wall sampled",
+    "in part": "torsion hysteresis restitution loss breakdown breakdown_p3 island smoothing two_parameters "
+    "two_parameters_born",
+    "differs": "p10",
+    "fitted": "free_period drive_amplitude",
+    "not printed": "delay",
+}
+EXPECTED = {key: verdict for verdict, keys in VERDICTS.items() for key in keys.split()}
+
+
+def verdicts_on(study: str) -> dict[str, str]:
+    """Point of the letter -> verdict that a study must give; empty if it judges none."""
+    return {key: EXPECTED[key] for key, point in POINTS.items() if point.study == study}
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -8,7 +8,7 @@ from typing import get_type_hints
 
 import numpy as np
 import pytest
-from conftest import study_of
+from conftest import study_of, verdicts_on
 from oscillators import slow
 
 from studies.__main__ import main
@@ -38,7 +38,6 @@ SMALLER = {
     "shape": "--set drive.frequencies_hz=[22.2] --set scan.settle_cycles=400 --set modes.count=4 "
     "--set spring.elements_per_leg=12 --set spring.elements_on_arc=8".split(),
     "claims": ["--positions", "3", "--set", "modes.count=4"],
-    "calibrate": ["--set", "modes.count=4", "--set", "spring.elements_per_leg=12"],
 }
 
 
@@ -50,6 +49,7 @@ FEWER = {
         "model.LONG_ENOUGH": 1e-3,
         "model.PATIENCE": 0.02,
     },
+    "calibrate": {"calibrate_all": lambda scene, _: scene},
     "shape": {"__main__.COARSE": (1, 1)},
     "claims": {"__main__.QUICK_PLANE": (12, 3)},
 }
@@ -59,9 +59,8 @@ DRIVEN = "adequacy breakdown chart claims effective_impact hysteresis last_perio
 DRIVEN += ["lecture", "sweep", "time_trace", "transitions", "work_precision"]
 ON_A_SPRING = ("breakdown", "calibrate", "effective_impact", "last_period", "shape")
 
-#: A fit takes hundreds of meshes; what the others compute is tested beside their whole forms.
-SLOW = ("calibrate", "claims", "shape")
-
+#: Plates take long; the verdict on their readings is tested beside these.
+SLOW = ("shape",)
 
 OTHERS = [name for name in ON_THE_FRAME if name not in (*LOOKED_AT, *SLOW)]
 
@@ -73,6 +72,7 @@ def test_the_small_form_runs_and_leaves_a_table_a_figure_and_a_summary(run_study
     ran = run_study(name, "--quick", "--json", *SMALLER.get(name, ()))
     assert ran.code == 0, ran.err
     assert json.loads(ran.out)["study"] == ran.summary["study"] == name
+    assert ran.verdicts == verdicts_on(name)
 
 
 #: Options and keys that a study does not take, and what its sentence names.
@@ -149,9 +149,9 @@ def test_progress_says_what_it_counts(capsys, monkeypatch, tmp_path, letter_scen
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["claims", "shape", "stability", "work_precision"])
+@pytest.mark.parametrize("name", ["calibrate", "claims", "shape", "stability", "work_precision"])
 def test_the_small_form_runs_whole(run_study, name):
-    assert run_study(name, "--quick").code == 0
+    assert run_study(name, "--quick").verdicts == verdicts_on(name)
 
 
 def test_a_figure_is_kept_as_png_and_as_pdf_without_a_date(tmp_path):

@@ -3,11 +3,14 @@
 import math
 
 import pytest
+from conftest import verdicts_on
 from straight_frame import uniform_beam
 
 from beam import StripSection, assemble, exact_modes, flat_u, folded_u, natural_modes
 from beam.space import spatial_modes
+from studies.shell.run import Run
 from studies.shell.scene import SceneError, read_scene, single_mode_of
+from studies.spring.shape.__main__ import judge
 from studies.spring.shape.shapes import brought_to, kinds_of, reading_row, shape_of, shapes_of
 
 FOLDED = read_scene("tight_fold")
@@ -61,6 +64,13 @@ def test_the_table_says_what_the_study_claims(rows):
         assert row.tip_value_twist_off_line < 0.2 * row.tip_value_bending, name
         tips = row.tip_value_twist_off_line / row.tip_value_bending
         assert row.first_twist_hz > 30.0 * row.first_bending_hz * tips
+
+
+def test_the_verdict_on_torsion(rows, tmp_path):
+    run = Run(study="shape", folder=tmp_path, scene=FOLDED, command="")
+    judge(run, rows)
+    kept = run.close("done", {"rows": []})["verdicts"]
+    assert {point: entry["verdict"] for point, entry in kept.items()} == verdicts_on("shape")
 
 
 def test_kinds_of_the_folded_strip(shapes):

@@ -113,7 +113,9 @@ def judge(run: Run, at: Approach, orbits: Sequence[Approach], floors: Sequence[F
     )
     delay = f"{1e3 * at.delay_s:.3f} ms at an excess of {at.excess:g}"
     note = f"{at.delay_s / at.arc_s:.2f} of the time v/a in which the tip would turn by itself"
-    run.verdict("delay", "not printed", found=delay, note=note, figure="speed")
+    arc = at.arc_s * (1.0 + at.restitution - at.kick)
+    late = 0.0 < at.delay_s and abs(at.delay_s - arc) <= NEAR * at.arc_s
+    run.verdict("delay", "not printed" if late else "differs", found=delay, note=note, figure="speed")
     less = ": the letter estimates less" if run.letters and lossy > letter.RESTITUTION + NEAR else ""
     low = f"no first collision leaves mode 1 a restitution below {written(lossy, 2)}, whatever the ball{less}"
     run.finding(f"{WHERE[run.letters]}, {low}.")
