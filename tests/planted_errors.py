@@ -3,7 +3,7 @@
 Plants one error at a time in a copy of the tree and runs the tests, which must pass without it, related ones
 first, until one fails.  `planted.csv` in the folder `--out` keeps what was seen, and by which test; the same
 command goes on from there.  An edited kernel takes a minute to compile: two terminals, with a seed, 30 places
-and a folder each, take two hours at most.
+and a folder each, take two hours at most.  With `--package studies` the places are in what studies compute.
 
 Kinds: a sign flipped, a factor of two, a comparison turned, an index shifted, a term dropped.  Not places:
 text, annotations and raised errors, which compute nothing; constants of modules, fields and arguments and
@@ -27,17 +27,30 @@ from typing import Any
 
 ROOT = Path(__file__).resolve().parent.parent
 FILES = {
-    "flight/*": "flight|crossing|polynomial|derivatives",
-    "touch/* sensitivity/*": "contact_laws|delayed|derivatives|shooting|time_stepping",
-    "engine/*": "sampling|simulation|bouncing|digits|modes",
-    "collision virtual_motion": "collision",
-    "orbits/*/* orbits/shooting": "shooting|families|derivatives|delayed|settling|clouds|path",
-    "maps/*": "nordmark|nonlinear|sampling|lyapunov|clouds|derivatives",
-    "one_mode/*": "single_mode|sampling|clouds",
+    "contact/flight/*": "flight|crossing|polynomial|derivatives",
+    "contact/touch/* contact/sensitivity/*": "contact_laws|delayed|derivatives|shooting|time_stepping",
+    "contact/engine/*": "sampling|simulation|bouncing|digits|modes",
+    "contact/collision contact/virtual_motion": "collision",
+    "contact/orbits/*/* contact/orbits/s*": "shooting|families|derivatives|delayed|settling|clouds|path",
+    "contact/maps/*": "nordmark|nonlinear|sampling|lyapunov|clouds|derivatives",
+    "contact/one_mode/*": "single_mode|sampling|clouds",
+    "studies/physics/*": "least_model|descriptions|calibration|two_parameters|noise|scene",
+    "studies/experiment/*/* studies/experiment/trace": "",
+    "studies/measurement/identify/*/* studies/measurement/identify/report": "",
+    "studies/measurement/n*/* studies/measurement/identify/__main__": "",
+    "studies/methods/[!p]*/* studies/methods/crossings": "",
+    "studies/spring/*/* studies/spring/modes": "spring",
+    "studies/shell/scene/* studies/shell/digits studies/shell/sweep": "scene|page|sweep",
 }
-"""Where the places are, and words in the names of the tests that run first there."""
-NOT_RUN = "bounded_calls|all_studies|every_study|explore|film|page|peers|pictures|tour"
+"""Where the places are, and words in names of tests that run first there, beside the name of the folder."""
+CHAPTERS = "studies/(experiment|measurement|methods|spring)/"
+"""Places that only the tests with such a word in their name or text can see: no chapter imports another."""
+DRAWN = "figure|film"
+"""Files without places: a wrong picture is a matter for the eye."""
+NOT_RUN = "bounded_calls|all_studies|explore|film|peers|pictures|tour"
 """Words in the names of tests that measure time, which other programs take too, or that draw."""
+EVERY = "test_every_study"
+"""Small forms of all studies: last, and for a place in one study only the small form of that study."""
 LIMIT = 1200.0
 """Seconds for a file of tests; without an error none needs five minutes, compilation included."""
 CHECKED = "a first guess: what is proved from it does not depend on it, and else the general search goes on"
@@ -128,14 +141,16 @@ def planted(file: str, number: int) -> tuple[str, str, str]:
     return f"{file}: {a[start : start + 80]}", f"{file}: {b[start : start + 80]}", wrong
 
 
-def chosen(seed: int, count: int, only: str) -> list[tuple[str, int, str]]:
-    """(file, number, first tests) of the places: in turn from each kind and each part of `FILES`."""
+def chosen(package: str, seed: int, count: int, only: str) -> list[tuple[str, int, str]]:
+    """(file, number, first tests) of a package's places: in turn from each kind and each part of `FILES`."""
     cells: dict[tuple[str, str], list[tuple[str, int, str]]] = {}
-    for part, first in FILES.items():
-        files = {each: set(ROOT.glob(f"contact/{each}.py")) for each in part.split()}
+    for part, words in FILES.items():
+        files = {each: set(ROOT.glob(f"{each}.py")) for each in part.split() if each.startswith(package)}
         assert all(files.values()), f"no file of {part}"
-        for path in sorted(set().union(*files.values())):
+        for path in sorted(path for path in set().union(*files.values()) if not re.search(DRAWN, path.stem)):
             file = path.relative_to(ROOT).as_posix()
+            own = path.relative_to(ROOT).with_suffix("").parts[2:3]  # the folder, or else the file
+            first = "|".join(filter(None, [words, *own]))
             for number, (kind, *_) in enumerate(places(ast.parse(path.read_text(encoding="utf-8")))):
                 if only in f"{kind}/{file}":
                     cells.setdefault((part, kind), []).append((file, number, first))
@@ -145,13 +160,18 @@ def chosen(seed: int, count: int, only: str) -> list[tuple[str, int, str]]:
     return [columns[i][rank] for rank, i in ranks[:count]]
 
 
-def failing(tree: Path, first: str) -> str:
-    """The first test that fails in a copy of the tree."""
+def failing(tree: Path, file: str, first: str) -> str:
+    """The first test that fails in a copy of the tree with an error in this file."""
     env = os.environ | {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
-    tests = [*sorted(tree.glob("tests/contact/test_*.py")), *sorted(tree.glob("tests/studies/test_*.py"))]
+    folders = ["studies"] if file.startswith("studies") else ["contact", "studies"]
+    tests = [test for folder in folders for test in sorted(tree.glob(f"tests/{folder}/test_*.py"))]
     tests = [test for test in tests if not re.search(NOT_RUN, test.stem)]
-    for test in sorted(tests, key=lambda test: not re.search(first, test.stem)):
+    if chapter := re.match(CHAPTERS, file):
+        words = re.compile(rf"(?<![a-z])({first})")
+        tests = [test for test in tests if words.search(test.stem + test.read_text(encoding="utf-8"))]
+    for test in sorted(tests, key=lambda test: (not re.search(first, test.stem), test.stem == EVERY)):
         command = [sys.executable, "-m", "pytest", "-x", "-m", "not slow", "-p", "no:cacheprovider", test]
+        command += ["-k", first.replace("|", " or ")] if chapter and test.stem == EVERY else []
         try:
             answer = subprocess.run(command, cwd=tree, env=env, capture_output=True, text=True, timeout=LIMIT)
         except subprocess.TimeoutExpired:
@@ -165,6 +185,7 @@ def failing(tree: Path, first: str) -> str:
 def main() -> None:
     """Plant, run, write down; a line for each place."""
     parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--package", choices=("contact", "studies"), default="contact")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--places", type=int, default=60)
     parser.add_argument("--only", default="", help="places with this in KIND/FILE")
@@ -176,12 +197,12 @@ def main() -> None:
     subprocess.run([sys.executable, "-m", "contact.warm_up"], cwd=tree, check=True)
     kernels = set(tree.glob("contact/__pycache__/kernels-*"))
     done = {(row[0], row[1]): row for row in csv.reader(table.open())} if table.exists() else {}
-    wanted, begun, missed = chosen(args.seed, args.places, args.only), time.monotonic(), []
+    wanted, begun, missed = chosen(args.package, args.seed, args.places, args.only), time.monotonic(), []
     for i, (file, number, first) in enumerate(wanted, 1):
         (before, after, text), start = planted(file, number), time.monotonic()
         if not (row := done.get((str(number), after))):
             (tree / file).write_text(text, encoding="utf-8")
-            by = EQUIVALENT.get(after) or failing(tree, first)
+            by = EQUIVALENT.get(after) or failing(tree, file, first)
             shutil.copy2(ROOT / file, tree / file)
             for folder in set(tree.glob("contact/__pycache__/kernels-*")) - kernels:
                 shutil.rmtree(folder)

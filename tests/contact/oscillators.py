@@ -96,10 +96,11 @@ def light_tip(
     excess: float | None = 0.05,
     damping: float = 0.02,
     frequency: float = 21.5,
+    turned: bool = False,
 ) -> ImpactOscillator:
     """The same spring with a light tip, for collisions; undriven if `excess` is None."""
     drive = None if excess is None else (frequency, 0.0)
-    light = spring(n_modes, law, damping=damping, phi=LIGHT, drive=drive)
+    light = spring(n_modes, law, damping=damping, phi=LIGHT, drive=drive, turned=turned)
     return light if excess is None else light.with_excess(excess)
 
 

@@ -74,7 +74,7 @@ def divergence(strobed, state, count, align=0):
     weight = np.exp(-1.0 / (t * (1.0 - t)))  # S. Das et al., Nonlinearity 30 (2017) 4111
     kept = np.array(rates[align : align + count])
     blocks = [block.mean() for block in np.array_split(kept, 20)]
-    return float(weight @ kept / weight.sum()), float(np.std(blocks, ddof=1) / math.sqrt(0.63 * 20))
+    return float(weight @ kept / weight.sum()), float(np.std(blocks, ddof=1) / math.sqrt(0.51 * 20))
 
 
 def test_the_logistic_map_has_ln_2_at_4_by_both_routes():
@@ -84,6 +84,29 @@ def test_the_logistic_map_has_ln_2_at_4_by_both_routes():
     assert found.error < 5e-3
     rate, error = divergence(system, system.steady(), 5000)
     assert rate == pytest.approx(math.log(2.0), abs=4.0 * error)
+
+
+class TentMap(LogisticMap):
+    """x/a or (1 - x)/(1 - a): in its chaos the slopes are independent, with probabilities a and 1 - a."""
+
+    def jacobians(self, state, count):
+        left = np.random.default_rng(int(state[0])).random(count) < self.a
+        slopes = np.where(left, 1.0 / self.a, 1.0 / (1.0 - self.a))
+        return [(np.array([[slope]]), 1) for slope in slopes], state + 1.0
+
+
+def test_the_standard_error_is_the_scatter_of_runs_with_independent_slopes():
+    a, count, runs = 0.2, 200, 40
+    found = [map_exponents(TentMap(a=a), np.array([100.0 * run]), count)[0] for run in range(runs)]
+    mean, spread = -a * math.log(a) - (1 - a) * math.log(1 - a), math.sqrt(a * (1 - a)) * math.log(1 / a - 1)
+    t = (np.arange(count) + 0.5) / count
+    weight = np.exp(-1.0 / (t * (1.0 - t)))
+    error = spread * np.linalg.norm(weight) / weight.sum()  # exact: the variance of a weighted mean
+    scatter = math.sqrt(np.mean([(each.largest - mean) ** 2 for each in found]))
+    given = math.sqrt(np.mean([each.error**2 for each in found]))
+    # three standard errors of a standard deviation: of the runs, and of 20 blocks in each run
+    assert scatter == pytest.approx(error, rel=3.0 / math.sqrt(2 * runs))
+    assert given == pytest.approx(error, rel=3.0 / math.sqrt(2 * 19 * runs))
 
 
 def test_the_jacobians_are_the_differences_of_the_period_map():

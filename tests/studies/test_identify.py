@@ -19,6 +19,7 @@ from studies.measurement.identify.motion.starts import predictions_of, strobe_pe
 from studies.measurement.identify.record.records import NoAnswer, read_record, synthetic
 from studies.measurement.identify.report import Estimate
 from studies.physics.parameters import ALIASES, fitted_scene, parameters_of, with_values
+from studies.shell.digits import written
 from studies.shell.scene import beam_at, read_scene, single_mode_at
 
 NAMES = ("free_period", "decay_rate", "gap", "restitution")
@@ -261,6 +262,7 @@ def test_a_model_that_is_too_small_is_no_answer_and_leaves_no_table(run_study, t
         (772943.0, 461280.0, "N/m", "770(460) kN/m", "310 to 1230"),
         (0.0123, 0.00451, "m", "12.3(4.5) mm", "7.8 to 16.8"),
         (1.7e-7, 5.8e-7, "m", "0.17(58) \u00b5m", "−0.41 to 0.75"),
+        (0.00071, 0.0031, "m", "0.7(3.1) mm", "−2.4 to 3.8"),
         (22.2, 0.0996, "Hz", "22.20(10) Hz", "22.10 to 22.30"),
         (0.18, 0.004, "1", "0.1800(40)", "0.1760 to 0.1840"),
     ],
@@ -286,6 +288,11 @@ def test_the_example_makes_a_record_of_each_kind_and_finds_what_it_put_in(run_st
     assert {row["parameter"] for row in ran.rows("profile")} & {"delay", "restitution"}
     assert len(ran.summary["next"]) > 2
     assert {row["orbits"] for row in ran.rows("letter_orbits")} > {"p3", "p11"}
+    own = [row for row in ran.rows("parameters") if row["parameter"] not in UNITS]
+    least = max(own, key=lambda row: abs(float(row["standard_error"]) / float(row["estimate"])))
+    share = 100.0 * abs(float(least["standard_error"]) / float(least["estimate"]))
+    words = f"the {least['parameter'].replace('_', ' ')} is known least: to {written(share, 1)} %"
+    assert any(words in sentence for sentence in ran.summary["findings"])
     assert "free period" in ran.summary["findings"][1] and "correlation_gap" in ran.rows("parameters")[0]
 
 

@@ -16,7 +16,7 @@ from studies.experiment.time_trace.__main__ import conditions, time_trace
 from studies.experiment.transitions.__main__ import ends_beside_folds, transitions
 from studies.letter import AMPLITUDE_STABILITY
 from studies.physics.descriptions import born_and_lowered, or_none
-from studies.physics.least_model import LADDER, least_modes, questions, reference_of
+from studies.physics.least_model import LADDER, Question, least_modes, questions, reference_of
 from studies.shell.scene import Scene, beam_at, corresponding, read_scene
 
 #: What a search over modes, meshes and laws that followed every orbit found for the letter's scene.
@@ -82,6 +82,15 @@ def test_a_coarse_mesh_or_few_measured_rates_bound_the_reference(letter_scene):
     assert least_modes(few, {"kick": 1e-12})[0].modes.count == 3
     coarse = letter_scene.replace({"spring.elements_per_leg": 2, "spring.elements_on_arc": 1})
     assert reference_of(coarse).n_modes < 40
+
+
+@pytest.mark.parametrize("least", [3, 10, 40])
+def test_a_number_of_modes_that_is_good_by_chance_is_not_taken(letter_scene, monkeypatch, least):
+    """One mode gives it, where errors cancel, and two do not; a quantity that needs three modes comes first."""
+    off = [lambda modes, low=low: float(1 < modes < low) for low in (3, least)]
+    both = [Question("kick at 22.2 Hz", 0.5, each) for each in off]
+    monkeypatch.setattr("studies.physics.least_model.questions", lambda *_: both)
+    assert least_modes(letter_scene, {"kick": 0.5})[0].modes.count == least
 
 
 def test_an_unknown_quantity_is_refused(letter_scene):

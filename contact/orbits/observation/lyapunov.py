@@ -64,8 +64,8 @@ def _weighted(rates: Array, spans: Array) -> tuple[Array, float]:
     mean = weight @ rates / weight.sum()
     blocks = np.array_split(np.arange(rates.shape[0]), min(BLOCKS, rates.shape[0]))
     parts = [float(spans[b] @ rates[b, 0] / spans[b].sum()) for b in blocks]
-    # the weights leave about 0.63 of the run: 1 / sum of squares over square of the sum
-    error = float(np.std(parts, ddof=1) / math.sqrt(0.63 * len(parts))) if len(parts) > 1 else math.inf
+    # the weights leave about 0.51 of the run: square of their mean over mean of their squares
+    error = float(np.std(parts, ddof=1) / math.sqrt(0.51 * len(parts))) if len(parts) > 1 else math.inf
     return mean, error
 
 
