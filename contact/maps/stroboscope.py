@@ -154,8 +154,12 @@ class StroboscopicMap:
         A strobe that falls into a contact is passed over: the next derivative then spans several periods.  If
         the last strobe does, the orbit goes on to the next one off the wall, or ends before it.
 
-        Raises ValueError for a state in contact or not at a strobe, and UnresolvedCrossing if the motion ends
-        at rest on the stop or is in contact at every strobe.
+        A rest on the stop forgets two directions, and an impact without rebound forgets one.  The derivative
+        is then returned as several factors.  The first ones lead to the directions that are left, and span 0
+        periods.
+
+        Raises ValueError for a state in contact or not at a strobe, NoDerivative if the motion grazes the
+        stop, and UnresolvedCrossing if it ends at rest on the stop or is in contact at every strobe.
         """
         count = require_whole("count", count, "drive periods")
         free = require_state(self.oscillator, state).regime == Regime.OUTSIDE
@@ -164,18 +168,18 @@ class StroboscopicMap:
         period, n, weight = self._system.numbers.period, self.oscillator.n_modes, self._system.weight
         for more in LONGER:
             trajectory = simulate(self.oscillator, replace(state, time=0.0), periods=count + more)
-            replay = Replay(Sensitivities(oscillator=self.oscillator), trajectory)
+            replay = Replay(Sensitivities(oscillator=self.oscillator), trajectory, factored=True)
             strobes = [j for j in range(1, count + more + 1) if not replay.touching(j * period)]
             if strobes:
                 strobes = strobes[: len(strobes) if more == 0 else 1]
                 break
         else:
             raise UnresolvedCrossing(time=state.time)
-        found, first = [], 0
+        found, first = list[tuple[np.ndarray, int]](), 0
         for last in strobes:
-            replay.tangent = np.eye(2 * n + 2)
-            tangent = replay.to(last * period)[: 2 * n, : 2 * n]
-            found.append((weight[:, None] * tangent / weight, last - first))
+            replay.tangent, replay.factors = np.vstack([np.diag(1.0 / weight), np.zeros((2, 2 * n))]), []
+            tangent = weight[:, None] * replay.to(last * period)[: 2 * n]
+            found += [*((factor, 0) for factor in replay.factors), (tangent, last - first)]
             first = last
         q, v = trajectory.strobe_displacement[first - 1], trajectory.strobe_velocity[first - 1]
         return found, State(displacement=q, velocity=v)

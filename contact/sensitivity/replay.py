@@ -2,6 +2,15 @@
 
 The touches are taken from the simulation.  The time of a touch changes by -y(d)/v along a tangent d, v its
 approach velocity.  At a graze v is zero, and the motion has no derivative.  See ``docs/theory/flight.md``.
+
+A rest on the stop forgets two directions.  Let Q be an orthonormal basis of the modes with phi . Q = 0.  The
+impulses act along phi alone, so that Q^T u and Q^T v do not notice the hops before the rest, except for
+their height.  The hops that are left out add terms of second order in their speed.  In the rest
+
+    u = u_0(t) + Q a,      a'' = -Q^T c Q a' - Q^T omega^2 Q a,
+
+whatever the times at which it begins and ends: at the release the force is zero, and the flow is continuous.
+A touch without rebound forgets one direction, the displacement of the tip.
 """
 
 import math
@@ -47,6 +56,9 @@ class Replay:
         The oscillator, and the parameters to which the last columns of `tangent` belong; and its motion.
     start : State, optional
         The state from which the run starts; needed for the derivatives of the flight to the first touch.
+    factored : bool, optional
+        Whether the motion may rest, and `tangent` is replaced by a basis where a touch forgets directions.
+        All tangents must then have S = C = 0, and no parameters.
 
     Attributes
     ----------
@@ -54,23 +66,40 @@ class Replay:
         Tangents of (u, v, S, C) at the time reached; to be set before the first step.
     impact_time : dict of int to ndarray, shape (columns,)
         Derivatives of the start of touch number i along each tangent [s].
+    factors : list of ndarray
+        The tangents that were replaced, in coordinates of the basis.  The whole derivative is the product of
+        `tangent` and these, the last one first.
 
-    NoDerivative is raised if the motion grazes the stop, or comes to rest on it.
+    NoDerivative is raised if the motion grazes the stop, or comes to rest on it without `factored`.
     """
 
     def __init__(
-        self, sensitivities: Sensitivities, trajectory: Trajectory, start: State | None = None
+        self,
+        sensitivities: Sensitivities,
+        trajectory: Trajectory,
+        start: State | None = None,
+        *,
+        factored: bool = False,
     ) -> None:
         self.vary, n, met = sensitivities.variation, sensitivities.oscillator.n_modes, trajectory.impacts
         numbers = self.vary.numbers
         words = "touches the stop", "grazes the stop", "comes to rest on the stop", "starts in the stop"
-        for i in np.flatnonzero(met.kind != ImpactKind.IMPACT):
+        stays = (met.kind == ImpactKind.STAY) & factored
+        for i in np.flatnonzero((met.kind != ImpactKind.IMPACT) & ~stays):
             at, speed = float(met.start[i]), float(met.approach[i])
             raise NoDerivative(time=at, velocity=speed, detail=f"it {words[met.kind[i]]} there")
-        self.start, self.end = met.start, np.nan_to_num(met.end, nan=np.inf)
-        self.approach, self._phase, self._touch = met.approach, met.clock, met.deviations_start
+        touches = np.flatnonzero(~stays)  # a stay follows the impact that begins it
+        self._rests = np.append(stays[1:], np.zeros(1, dtype=bool))[touches]
+        last = touches + self._rests
+        self.start, self.end = met.start[touches], np.nan_to_num(met.end[last], nan=np.inf)
+        self.approach, self._phase, self._touch = (
+            given[touches] for given in (met.approach, met.clock, met.deviations_start)
+        )
+        stuck = (met.rebound[touches] == 0.0) & np.isnan(met.peak_force[touches])
+        self._forgets, self._length = self._rests | (stuck & factored), met.duration[touches]
+        self._released, self._held = met.deviations_end[last], met.deviations_start[last]
         self.tangent = np.zeros((2 * n + 2, len(self.vary.scalars)))
-        self.impact_time = dict[int, Array]()
+        self.impact_time, self.factors = dict[int, Array](), list[Array]()
         self._i, self.clock, self.u, self.v = 0, 0.0, np.zeros(n), np.zeros(n)
         if start is not None:
             self.clock = start.time
@@ -89,6 +118,10 @@ class Replay:
         """
         while self._i < self.start.size and self.start[self._i] <= time:
             i, n = self._i, self.u.size
+            if self._forgets[i] and self.end[i] <= time:
+                self._forget(i)
+                self._i += 1
+                continue
             at, phase, (u, v) = float(self.start[i]), float(self._phase[i]), self._touch[i].copy()
             self._fly(at)
             self.impact_time[i] = -all_tip_changes(self.vary, self.tangent, u, v, phase)[0] / self.approach[i]
@@ -104,6 +137,26 @@ class Replay:
             self._i += 1
         self._fly(time)
         return self.tangent
+
+    def _forget(self, i: int) -> None:
+        """Go through touch number `i`, and a rest that follows, to a basis of what is not forgotten."""
+        from scipy.linalg import block_diag, expm  # slow to import
+
+        numbers, rests, n = self.vary.numbers, self._rests[i], self.u.size
+        phase, (u, v) = float(self._phase[i]), self._touch[i].copy()
+        after, clock = (self._held if rests else self._released)[i].copy(), phase + float(self._length[i])
+        self._fly(float(self.start[i]))
+        LAWS[numbers.law].saltation(numbers, self.vary, (phase, u, v), (clock, *after), self.tangent)
+        unit, free = numbers.fastest, np.linalg.qr(numbers.phi[:, None], mode="complete")[0][:, 1:]
+        rates = free if rests else np.eye(n)
+        self.factors.append(block_diag(free, rates / unit).T @ self.tangent[:-2])
+        basis = block_diag(free, rates * unit)
+        if rests:
+            pull, drag = (-free.T * row @ free for row in (numbers.omega**2 / unit, numbers.decay))
+            held = np.block([[np.zeros_like(pull), unit * np.eye(n - 1)], [pull, drag]])
+            basis = basis @ expm(held * (self.end[i] - self.start[i]))
+        self.tangent = np.vstack([basis, np.zeros((2, basis.shape[1]))])
+        self.clock, (self.u, self.v) = float(self.end[i]), self._released[i].copy()
 
     def along(self, times: Array) -> Array:
         """The tangents of (u, v) at rising `times` [s], shape (n_times, 2 n_modes, columns)."""
