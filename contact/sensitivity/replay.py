@@ -97,7 +97,7 @@ class Replay:
         )
         stuck = (met.rebound[touches] == 0.0) & np.isnan(met.peak_force[touches])
         self._forgets, self._length = self._rests | (stuck & factored), met.duration[touches]
-        self._released, self._held = met.deviations_end[last], met.deviations_start[last]
+        self._released = met.deviations_end[last]
         self.tangent = np.zeros((2 * n + 2, len(self.vary.scalars)))
         self.impact_time, self.factors = dict[int, Array](), list[Array]()
         self._i, self.clock, self.u, self.v = 0, 0.0, np.zeros(n), np.zeros(n)
@@ -144,9 +144,11 @@ class Replay:
 
         numbers, rests, n = self.vary.numbers, self._rests[i], self.u.size
         phase, (u, v) = float(self._phase[i]), self._touch[i].copy()
-        after, clock = (self._held if rests else self._released)[i].copy(), phase + float(self._length[i])
+        after = phase + float(self._length[i]), *self._released[i].copy()
+        if rests:  # the last impact takes the velocity of the tip
+            after = phase, u, v - numbers.least_change(self.approach[i])
         self._fly(float(self.start[i]))
-        LAWS[numbers.law].saltation(numbers, self.vary, (phase, u, v), (clock, *after), self.tangent)
+        LAWS[numbers.law].saltation(numbers, self.vary, (phase, u, v), after, self.tangent)
         unit, free = numbers.fastest, np.linalg.qr(numbers.phi[:, None], mode="complete")[0][:, 1:]
         rates = free if rests else np.eye(n)
         self.factors.append(block_diag(free, rates / unit).T @ self.tangent[:-2])

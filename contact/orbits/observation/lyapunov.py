@@ -17,6 +17,7 @@ from functools import reduce
 from typing import Literal, TypeVar
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from beam.parameters import Array, record, require_whole
 from contact.errors import NoDerivative, NotPeriodic
@@ -59,10 +60,10 @@ def _finite(matrix: Array) -> Array:
     return matrix
 
 
-def _logs(factors: Array) -> Array:
+def _logs(factors: ArrayLike) -> Array:
     """Logarithms of the sizes of `factors`; -inf for a zero."""
     with np.errstate(divide="ignore"):
-        return np.log(np.abs(factors))
+        return np.asarray(np.log(np.abs(factors)), dtype=float)
 
 
 def _weighted(rates: Array, spans: Array) -> tuple[Array, float]:
