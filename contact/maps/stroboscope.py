@@ -155,8 +155,7 @@ class StroboscopicMap:
         the last strobe does, the orbit goes on to the next one off the wall, or ends before it.
 
         A rest on the stop forgets two directions, and an impact without rebound forgets one.  The derivative
-        is then returned as several factors.  The first ones lead to the directions that are left, and span 0
-        periods.
+        is then returned as several factors; all but the last one span 0 periods.
 
         Raises ValueError for a state in contact or not at a strobe, NoDerivative if the motion grazes the
         stop, and UnresolvedCrossing if it ends at rest on the stop or is in contact at every strobe.
@@ -168,14 +167,14 @@ class StroboscopicMap:
         period, n, weight = self._system.numbers.period, self.oscillator.n_modes, self._system.weight
         for more in LONGER:
             trajectory = simulate(self.oscillator, replace(state, time=0.0), periods=count + more)
-            replay = Replay(Sensitivities(oscillator=self.oscillator), trajectory, factored=True)
+            replay = Replay(Sensitivities(oscillator=self.oscillator), trajectory)
             strobes = [j for j in range(1, count + more + 1) if not replay.touching(j * period)]
             if strobes:
                 strobes = strobes[: len(strobes) if more == 0 else 1]
                 break
         else:
             raise UnresolvedCrossing(time=state.time)
-        found, first = list[tuple[np.ndarray, int]](), 0
+        found, first = [], 0
         for last in strobes:
             replay.tangent, replay.factors = np.vstack([np.diag(1.0 / weight), np.zeros((2, 2 * n))]), []
             tangent = weight[:, None] * replay.to(last * period)[: 2 * n]

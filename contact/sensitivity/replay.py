@@ -3,14 +3,14 @@
 The touches are taken from the simulation.  The time of a touch changes by -y(d)/v along a tangent d, v its
 approach velocity.  At a graze v is zero, and the motion has no derivative.  See ``docs/theory/flight.md``.
 
-A rest on the stop forgets two directions.  Let Q be an orthonormal basis of the modes with phi . Q = 0.  The
-impulses act along phi alone, so that Q^T u and Q^T v do not notice the hops before the rest, except for
-their height.  The hops that are left out add terms of second order in their speed.  In the rest
+A rest on the stop forgets two directions.  Let Q be an orthonormal basis of the modes with phi . Q = 0.
+Impulses act along phi alone.  The hops that are left out therefore change tangents of Q^T u and Q^T v only by
+their height, to second order in their speed.  In the rest tangents are Q a with
 
-    u = u_0(t) + Q a,      a'' = -Q^T c Q a' - Q^T omega^2 Q a,
+    a'' = -Q^T c Q a' - Q^T omega^2 Q a.
 
-whatever the times at which it begins and ends: at the release the force is zero, and the flow is continuous.
-A touch without rebound forgets one direction, the displacement of the tip.
+The times at which it begins and ends do not matter: at the release the force is zero, and the flow is
+continuous.  A touch without rebound forgets one direction, the displacement of the tip.
 """
 
 import math
@@ -48,17 +48,15 @@ def fly_through(vary, tangent, u, v, clock, times, table):
 class Replay:
     """Replays a `trajectory` with its variational equation.
 
-    The run must start off the stop.  Without `start` only tangents from the first touch on have a meaning.
+    The run must start off the stop.
 
     Parameters
     ----------
     sensitivities, trajectory : Sensitivities, Trajectory
         The oscillator, and the parameters to which the last columns of `tangent` belong; and its motion.
     start : State, optional
-        The state from which the run starts; needed for the derivatives of the flight to the first touch.
-    factored : bool, optional
-        Whether the motion may rest, and `tangent` is replaced by a basis where a touch forgets directions.
-        All tangents must then have S = C = 0, and no parameters.
+        The state from which the run starts.  Without it the tangents must have S = C = 0 and no parameters.
+        The motion may then rest; where it forgets directions, a basis of the others replaces `tangent`.
 
     Attributes
     ----------
@@ -67,37 +65,33 @@ class Replay:
     impact_time : dict of int to ndarray, shape (columns,)
         Derivatives of the start of touch number i along each tangent [s].
     factors : list of ndarray
-        The tangents that were replaced, in coordinates of the basis.  The whole derivative is the product of
-        `tangent` and these, the last one first.
+        The replaced tangents in this basis: the derivative is the product of `tangent` and these, the last
+        one first.
 
-    NoDerivative is raised if the motion grazes the stop, or comes to rest on it without `factored`.
+    NoDerivative is raised if the motion grazes the stop, or, with `start`, comes to rest on it.
     """
 
     def __init__(
-        self,
-        sensitivities: Sensitivities,
-        trajectory: Trajectory,
-        start: State | None = None,
-        *,
-        factored: bool = False,
+        self, sensitivities: Sensitivities, trajectory: Trajectory, start: State | None = None
     ) -> None:
         self.vary, n, met = sensitivities.variation, sensitivities.oscillator.n_modes, trajectory.impacts
         numbers = self.vary.numbers
         words = "touches the stop", "grazes the stop", "comes to rest on the stop", "starts in the stop"
-        stays = (met.kind == ImpactKind.STAY) & factored
+        stays = (met.kind == ImpactKind.STAY) & (start is None)
         for i in np.flatnonzero((met.kind != ImpactKind.IMPACT) & ~stays):
             at, speed = float(met.start[i]), float(met.approach[i])
             raise NoDerivative(time=at, velocity=speed, detail=f"it {words[met.kind[i]]} there")
-        touches = np.flatnonzero(~stays)  # a stay follows the impact that begins it
-        self._rests = np.append(stays[1:], np.zeros(1, dtype=bool))[touches]
-        last = touches + self._rests
-        self.start, self.end = met.start[touches], np.nan_to_num(met.end[last], nan=np.inf)
+        first = np.flatnonzero(~stays)
+        self._rests = np.append(stays, [False])[first + 1]  # a stay follows the impact that begins it
+        self.start, self.end = met.start[first], np.nan_to_num(met.end[first + self._rests], nan=np.inf)
         self.approach, self._phase, self._touch = (
-            given[touches] for given in (met.approach, met.clock, met.deviations_start)
+            met.approach[first],
+            met.clock[first],
+            met.deviations_start[first],
         )
-        stuck = (met.rebound[touches] == 0.0) & np.isnan(met.peak_force[touches])
-        self._forgets, self._length = self._rests | (stuck & factored), met.duration[touches]
-        self._released = met.deviations_end[last]
+        self._released = met.deviations_end[first + self._rests]
+        stuck = (met.rebound == 0.0) & np.isnan(met.peak_force) & (start is None)
+        self._forgets = self._rests | stuck[first]
         self.tangent = np.zeros((2 * n + 2, len(self.vary.scalars)))
         self.impact_time, self.factors = dict[int, Array](), list[Array]()
         self._i, self.clock, self.u, self.v = 0, 0.0, np.zeros(n), np.zeros(n)
@@ -109,7 +103,7 @@ class Replay:
     def touching(self, times: float | Array) -> NDArray[np.bool_]:
         """Whether the tip is in contact with the stop at `times` [s]."""
         at = np.asarray(times)[..., None]
-        return np.asarray(np.any((self.start < at) & (self.end > at), axis=-1))
+        return np.asarray(np.any((self.start <= at) & (self.end > at), axis=-1))
 
     def to(self, time: float) -> Array:
         """The tangents at `time` [s], shape (2 n_modes + 2, columns); the time must not run back.
@@ -118,7 +112,7 @@ class Replay:
         """
         while self._i < self.start.size and self.start[self._i] <= time:
             i, n = self._i, self.u.size
-            if self._forgets[i] and self.end[i] <= time:
+            if self._forgets[i]:
                 self._forget(i)
                 self._i += 1
                 continue
@@ -144,7 +138,7 @@ class Replay:
 
         numbers, rests, n = self.vary.numbers, self._rests[i], self.u.size
         phase, (u, v) = float(self._phase[i]), self._touch[i].copy()
-        after = phase + float(self._length[i]), *self._released[i].copy()
+        after = phase + float(self.end[i] - self.start[i]), *self._released[i].copy()
         if rests:  # the last impact takes the velocity of the tip
             after = phase, u, v - numbers.least_change(self.approach[i])
         self._fly(float(self.start[i]))

@@ -14,7 +14,7 @@ error comes from the scatter of blocks.  See ``docs/theory/orbits.md``.
 
 import math
 from functools import reduce
-from typing import Literal, TypeVar
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -60,10 +60,10 @@ def _finite(matrix: Array) -> Array:
     return matrix
 
 
+@np.errstate(divide="ignore")
 def _logs(factors: ArrayLike) -> Array:
     """Logarithms of the sizes of `factors`; -inf for a zero."""
-    with np.errstate(divide="ignore"):
-        return np.asarray(np.log(np.abs(factors)), dtype=float)
+    return np.asarray(np.log(np.abs(factors)), dtype=float)
 
 
 def _weighted(rates: Array, spans: Array) -> tuple[Array, float]:
@@ -125,9 +125,8 @@ def map_exponents(
     while done < align + count:
         found, state = strobed.jacobians(state, min(AT_ONCE, align + count - done))
         for matrix, span in found:
-            # what a transient forgets counts no more on the attractor
-            mode: Literal["complete", "reduced"] = "complete" if done < align else "reduced"
-            frame, triangle = np.linalg.qr(_finite(matrix @ frame), mode=mode)
+            # the average does not count what a transient forgets
+            frame, triangle = np.linalg.qr(_finite(matrix @ frame), "complete" if done < align else "reduced")
             kept = min(triangle.shape)
             logs[:kept], logs[kept:] = logs[:kept] + _logs(np.diag(triangle)), -np.inf
             done += span
@@ -180,7 +179,7 @@ def orbit_exponents(strobed: DifferentiableMap[S], state: S, m: int) -> Exponent
         for step, span in found:
             factors.append(step)
             done += span
-    # the round from where the fewest directions are left: its multipliers are the ones that are not zero
+    # a round from where the fewest directions are left, without the multipliers that are zero
     narrow = int(np.argmin([len(step) for step in factors])) + 1
     steps, start = factors[narrow:] + factors[:narrow], np.eye(len(factors[narrow - 1]))
     multipliers = np.linalg.eigvals(reduce(lambda product, step: _finite(step @ product), steps, start))
