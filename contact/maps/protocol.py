@@ -17,7 +17,9 @@ from beam.parameters import record, require, require_array, require_kind
 S = TypeVar("S")
 
 Jacobians = tuple[list[tuple[np.ndarray, int]], S]
-"""Derivatives along an orbit, each with the number of steps that it spans, and the state at its end."""
+"""Derivatives along an orbit, each with the number of steps that it spans, and the state at its end.
+
+A derivative that loses its rank may be given as factors that are not square, the first ones with span 0."""
 
 
 @record

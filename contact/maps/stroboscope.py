@@ -154,8 +154,11 @@ class StroboscopicMap:
         A strobe that falls into a contact is passed over: the next derivative then spans several periods.  If
         the last strobe does, the orbit goes on to the next one off the wall, or ends before it.
 
-        Raises ValueError for a state in contact or not at a strobe, and UnresolvedCrossing if the motion ends
-        at rest on the stop or is in contact at every strobe.
+        A rest on the stop forgets two directions, and an impact without rebound forgets one.  The derivative
+        is then returned as several factors; all but the last one span 0 periods.
+
+        Raises ValueError for a state in contact or not at a strobe, NoDerivative if the motion grazes the
+        stop, and UnresolvedCrossing if it ends at rest on the stop or is in contact at every strobe.
         """
         count = require_whole("count", count, "drive periods")
         free = require_state(self.oscillator, state).regime == Regime.OUTSIDE
@@ -173,9 +176,9 @@ class StroboscopicMap:
             raise UnresolvedCrossing(time=state.time)
         found, first = [], 0
         for last in strobes:
-            replay.tangent = np.eye(2 * n + 2)
-            tangent = replay.to(last * period)[: 2 * n, : 2 * n]
-            found.append((weight[:, None] * tangent / weight, last - first))
+            replay.tangent, replay.factors = np.vstack([np.diag(1.0 / weight), np.zeros((2, 2 * n))]), []
+            tangent = weight[:, None] * replay.to(last * period)[: 2 * n]
+            found += [*((factor, 0) for factor in replay.factors), (tangent, last - first)]
             first = last
         q, v = trajectory.strobe_displacement[first - 1], trajectory.strobe_velocity[first - 1]
         return found, State(displacement=q, velocity=v)

@@ -2,6 +2,15 @@
 
 The touches are taken from the simulation.  The time of a touch changes by -y(d)/v along a tangent d, v its
 approach velocity.  At a graze v is zero, and the motion has no derivative.  See ``docs/theory/flight.md``.
+
+A rest on the stop forgets two directions.  Let Q be an orthonormal basis of the modes with phi . Q = 0.
+Impulses act along phi alone.  The hops that are left out therefore change tangents of Q^T u and Q^T v only by
+their height, to second order in their speed.  In the rest tangents are Q a with
+
+    a'' = -Q^T c Q a' - Q^T omega^2 Q a.
+
+The times at which it begins and ends do not matter: at the release the force is zero, and the flow is
+continuous.  A touch without rebound forgets one direction, the displacement of the tip.
 """
 
 import math
@@ -39,14 +48,15 @@ def fly_through(vary, tangent, u, v, clock, times, table):
 class Replay:
     """Replays a `trajectory` with its variational equation.
 
-    The run must start off the stop.  Without `start` only tangents from the first touch on have a meaning.
+    The run must start off the stop.
 
     Parameters
     ----------
     sensitivities, trajectory : Sensitivities, Trajectory
         The oscillator, and the parameters to which the last columns of `tangent` belong; and its motion.
     start : State, optional
-        The state from which the run starts; needed for the derivatives of the flight to the first touch.
+        The state from which the run starts.  Without it the tangents must have S = C = 0 and no parameters.
+        The motion may then rest; where it forgets directions, a basis of the others replaces `tangent`.
 
     Attributes
     ----------
@@ -54,8 +64,11 @@ class Replay:
         Tangents of (u, v, S, C) at the time reached; to be set before the first step.
     impact_time : dict of int to ndarray, shape (columns,)
         Derivatives of the start of touch number i along each tangent [s].
+    factors : list of ndarray
+        The replaced tangents in this basis: the derivative is the product of `tangent` and these, the last
+        one first.
 
-    NoDerivative is raised if the motion grazes the stop, or comes to rest on it.
+    NoDerivative is raised if the motion grazes the stop, or, with `start`, comes to rest on it.
     """
 
     def __init__(
@@ -64,13 +77,23 @@ class Replay:
         self.vary, n, met = sensitivities.variation, sensitivities.oscillator.n_modes, trajectory.impacts
         numbers = self.vary.numbers
         words = "touches the stop", "grazes the stop", "comes to rest on the stop", "starts in the stop"
-        for i in np.flatnonzero(met.kind != ImpactKind.IMPACT):
+        stays = (met.kind == ImpactKind.STAY) & (start is None)
+        for i in np.flatnonzero((met.kind != ImpactKind.IMPACT) & ~stays):
             at, speed = float(met.start[i]), float(met.approach[i])
             raise NoDerivative(time=at, velocity=speed, detail=f"it {words[met.kind[i]]} there")
-        self.start, self.end = met.start, np.nan_to_num(met.end, nan=np.inf)
-        self.approach, self._phase, self._touch = met.approach, met.clock, met.deviations_start
+        first = np.flatnonzero(~stays)
+        self._rests = np.append(stays, [False])[first + 1]  # a stay follows the impact that begins it
+        self.start, self.end = met.start[first], np.nan_to_num(met.end[first + self._rests], nan=np.inf)
+        self.approach, self._phase, self._touch = (
+            met.approach[first],
+            met.clock[first],
+            met.deviations_start[first],
+        )
+        self._released = met.deviations_end[first + self._rests]
+        stuck = (met.rebound == 0.0) & np.isnan(met.peak_force) & (start is None)
+        self._forgets = self._rests | stuck[first]
         self.tangent = np.zeros((2 * n + 2, len(self.vary.scalars)))
-        self.impact_time = dict[int, Array]()
+        self.impact_time, self.factors = dict[int, Array](), list[Array]()
         self._i, self.clock, self.u, self.v = 0, 0.0, np.zeros(n), np.zeros(n)
         if start is not None:
             self.clock = start.time
@@ -80,7 +103,7 @@ class Replay:
     def touching(self, times: float | Array) -> NDArray[np.bool_]:
         """Whether the tip is in contact with the stop at `times` [s]."""
         at = np.asarray(times)[..., None]
-        return np.asarray(np.any((self.start < at) & (self.end > at), axis=-1))
+        return np.asarray(np.any((self.start <= at) & (self.end > at), axis=-1))
 
     def to(self, time: float) -> Array:
         """The tangents at `time` [s], shape (2 n_modes + 2, columns); the time must not run back.
@@ -89,6 +112,10 @@ class Replay:
         """
         while self._i < self.start.size and self.start[self._i] <= time:
             i, n = self._i, self.u.size
+            if self._forgets[i]:
+                self._forget(i)
+                self._i += 1
+                continue
             at, phase, (u, v) = float(self.start[i]), float(self._phase[i]), self._touch[i].copy()
             self._fly(at)
             self.impact_time[i] = -all_tip_changes(self.vary, self.tangent, u, v, phase)[0] / self.approach[i]
@@ -104,6 +131,28 @@ class Replay:
             self._i += 1
         self._fly(time)
         return self.tangent
+
+    def _forget(self, i: int) -> None:
+        """Go through touch number `i`, and a rest that follows, to a basis of what is not forgotten."""
+        from scipy.linalg import block_diag, expm  # slow to import
+
+        numbers, rests, n = self.vary.numbers, self._rests[i], self.u.size
+        phase, (u, v) = float(self._phase[i]), self._touch[i].copy()
+        after = phase + float(self.end[i] - self.start[i]), *self._released[i].copy()
+        if rests:  # the last impact takes the velocity of the tip
+            after = phase, u, v - numbers.least_change(self.approach[i])
+        self._fly(float(self.start[i]))
+        LAWS[numbers.law].saltation(numbers, self.vary, (phase, u, v), after, self.tangent)
+        unit, free = numbers.fastest, np.linalg.qr(numbers.phi[:, None], mode="complete")[0][:, 1:]
+        rates = free if rests else np.eye(n)
+        self.factors.append(block_diag(free, rates / unit).T @ self.tangent[:-2])
+        basis = block_diag(free, rates * unit)
+        if rests:
+            pull, drag = (-free.T * row @ free for row in (numbers.omega**2 / unit, numbers.decay))
+            held = np.block([[np.zeros_like(pull), unit * np.eye(n - 1)], [pull, drag]])
+            basis = basis @ expm(held * (self.end[i] - self.start[i]))
+        self.tangent = np.vstack([basis, np.zeros((2, basis.shape[1]))])
+        self.clock, (self.u, self.v) = float(self.end[i]), self._released[i].copy()
 
     def along(self, times: Array) -> Array:
         """The tangents of (u, v) at rising `times` [s], shape (n_times, 2 n_modes, columns)."""

@@ -2,11 +2,12 @@
 
 import math
 from dataclasses import dataclass, replace
+from functools import reduce
 
 import numpy as np
 import pytest
 from letters_spring import GAP, HERTZ
-from oscillators import equation_1
+from oscillators import GAMMA, OMEGA, PHI, equation_1, modes_on_stop, newton
 from simulated_orbit import beam
 
 from contact import NordmarkMap, State, StrobedOrbit, StroboscopicMap
@@ -54,6 +55,13 @@ def moved(strobed, state, change):
     ones = np.ones(state.displacement.size)
     q, v = np.split(change / strobed.coordinates(State(displacement=ones, velocity=ones)), 2)
     return replace(state, displacement=state.displacement + q, velocity=state.velocity + v)
+
+
+def difference(strobed, state, count, direction, step):
+    """The central difference of `count` periods in a direction, where `step` is relative to the scale."""
+    change = step * strobed.scale * np.eye(strobed.coordinates(state).size)[direction]
+    ends = [strobed.orbit(moved(strobed, state, sign * change), count).end for sign in (1, -1)]
+    return (strobed.coordinates(ends[0]) - strobed.coordinates(ends[1])) / (2.0 * step * strobed.scale)
 
 
 def divergence(strobed, state, count, align=0):
@@ -120,11 +128,9 @@ def test_the_jacobians_are_the_differences_of_the_period_map():
         matrix = np.linalg.multi_dot([m for m, _span in found][::-1])
         start = here.coordinates(state)
         for direction in (0, start.size // 2):
-            step = 1e-6 * here.scale * np.eye(start.size)[direction]
-            ends = [here.coordinates(here.orbit(moved(here, state, sign * step), 4).end) for sign in (1, -1)]
-            difference = (ends[0] - ends[1]) / (2e-6 * here.scale)
             # fast modes ring out within a period: their rows are rounding on both sides
-            assert difference == pytest.approx(matrix[:, direction], rel=1e-3, abs=1e-5)
+            found = difference(here, state, 4, direction, 1e-6)
+            assert found == pytest.approx(matrix[:, direction], rel=1e-3, abs=1e-5)
 
 
 def test_without_impacts_the_exponent_is_minus_half_the_decay_rate():
@@ -165,3 +171,29 @@ def test_chaos_has_one_exponent_by_both_routes_and_the_sum_of_the_determinants()
     rate, tau = here.oscillator.model.decay_rate[0], here.oscillator.stop.law.local_restitution
     wanted = -64 * rate / FREQUENCY + 2.0 * impacts * math.log(tau)
     assert logs == pytest.approx(wanted, rel=1e-9)
+
+
+@pytest.mark.parametrize("n, restitution, lost", [(1, 0.5, 2), (3, 0.5, 2), (3, 0.0, 2), (1, 0.0, 1)])
+def test_a_rest_forgets_two_directions_and_a_touch_without_rebound_one(n, restitution, lost):
+    if lost == 2:  # in each period the tip rests on the stop for a third of the time
+        decay, law = np.array([3.56, 19.2, 80.0])[:n], newton(restitution)
+        made = modes_on_stop(OMEGA[:n], decay, PHI[:n], GAMMA[:n], law=law, gap=0.005, drive=5.0)
+        here = StroboscopicMap(oscillator=made).at(3.0)
+    else:
+        here = StroboscopicMap(oscillator=equation_1(FREQUENCY, newton(0.0), gap=GAP)).at(0.02)
+    settled = settle(here, here.steady(), most_cycles=500)
+    m, left = settled.m, 2 * n - lost
+    count = 1 if lost == 2 else m
+    for shift in (0.0, 1e-3, -1e-3):
+        state = moved(here, settled.end, shift * here.scale * np.ones(2 * n))
+        steps, _end = here.jacobians(state, count)
+        matrix = reduce(lambda product, step: step[0] @ product, steps, np.eye(2 * n))
+        # steps of 1e-8 scales: truncation and rounding are some 1e-7 of the largest entry
+        columns = np.stack([difference(here, state, count, j, 1e-8) for j in range(2 * n)], axis=1)
+        assert columns == pytest.approx(matrix, abs=1e-6 * max(1.0, np.abs(matrix).max()))
+        sizes = np.linalg.svd(columns, compute_uv=False)
+        assert np.all(sizes[left:] < 1e-6) and np.all(sizes[:left] > 1e-3)
+    values = orbit_exponents(here, settled.end, m).values
+    assert np.isneginf(values).tolist() == [False] * left + [True] * lost
+    along = map_exponents(here, settled.end, 60 * m, align=10 * m)[0]
+    assert along.values == pytest.approx(values, abs=0.02) and along.error < 0.2

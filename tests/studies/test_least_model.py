@@ -86,7 +86,7 @@ def test_a_coarse_mesh_or_few_measured_rates_bound_the_reference(letter_scene):
 
 @pytest.mark.parametrize("least", [3, 10, 40])
 def test_a_number_of_modes_that_is_good_by_chance_is_not_taken(letter_scene, monkeypatch, least):
-    """One mode gives it, where errors cancel, and two do not; a quantity that needs three modes comes first."""
+    """One mode gives it, where errors cancel, and two do not; a quantity that needs three comes first."""
     off = [lambda modes, low=low: float(1 < modes < low) for low in (3, least)]
     both = [Question("kick at 22.2 Hz", 0.5, each) for each in off]
     monkeypatch.setattr("studies.physics.least_model.questions", lambda *_: both)
