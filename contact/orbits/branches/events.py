@@ -136,14 +136,11 @@ def accounted(a: CurvePoint, b: CurvePoint, events: Sequence[Event]) -> bool:
     if rounded(a.orbit) or rounded(b.orbit):
         return True
     before, after = (np.abs(point.orbit.multipliers) for point in (a, b))
-    least = np.sum(after > 1.0 + CLOSE) - np.sum(before > 1.0 - CLOSE)
-    most = np.sum(after > 1.0 - CLOSE) - np.sum(before > 1.0 + CLOSE)
-    changes = {0}
-    for event in events:
-        size = {"grazing": 0, "torus": 2}.get(event.kind, 1)
-        changes = {change + sign * size for change in changes for sign in (-1, 1)}
+    least = int(np.sum(after > 1.0 + CLOSE)) - int(np.sum(before > 1.0 - CLOSE))
+    most = int(np.sum(after > 1.0 - CLOSE)) - int(np.sum(before > 1.0 + CLOSE))
+    changes = sum({"grazing": 0, "torus": 2}.get(event.kind, 1) for event in events)
     undecided = any(event.kind == "undecided" for event in events)
-    return undecided or any(least <= change <= most for change in changes)
+    return undecided or any(least <= change <= most for change in range(-changes, changes + 1, 2))
 
 
 def passes(here: float, there: float) -> bool:

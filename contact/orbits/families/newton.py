@@ -68,8 +68,8 @@ class CurvePoint:
         """The same point, its direction turned to the side of the vector `other`."""
         if self.direction @ other >= 0.0:
             return self
-        turned = dict(direction=-self.direction, rate=-self.rate, touches=-self.touches)
-        return replace(self, determinant=-self.determinant, **turned)
+        point = replace(self, direction=-self.direction, rate=-self.rate, touches=-self.touches)
+        return replace(point, determinant=-self.determinant)
 
 
 def newton(
