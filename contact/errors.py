@@ -7,6 +7,7 @@ They carry time and place of the failure, and never a number that might be taken
 
 import pickle
 from contextlib import suppress
+from inspect import cleandoc
 
 
 class ContactError(RuntimeError):
@@ -29,6 +30,11 @@ class ContactError(RuntimeError):
 
     reason = "the computation could not be finished"
 
+    def __init_subclass__(cls) -> None:
+        """All errors of the family have the parameters of this one, also in their docstrings."""
+        parameters = cleandoc(ContactError.__doc__ or "").partition("\n\nParameters")[1:]
+        cls.__doc__ = "".join((cleandoc(cls.__doc__ or ""), *parameters))
+
     def __init__(
         self, *, time: float = 0.0, gap: float = 0.0, velocity: float = 0.0, detail: str = ""
     ) -> None:
@@ -47,106 +53,43 @@ class ContactError(RuntimeError):
 
 
 class UnresolvedCrossing(ContactError):
-    """A part of the motion that could be proved neither free nor touching.
-
-    Parameters
-    ----------
-    time, gap, velocity : float
-        Time since the start of the drive [s], distance of the tip from the stop [m] and velocity of the tip
-        towards the stop [m/s].
-    detail : str
-        Words that end the message.
-    """
+    """A part of the motion that could be proved neither free nor touching."""
 
     reason = "a crossing of the stop could be neither excluded nor located"
 
 
 class TouchedAtOnce(ContactError):
-    """Two stops touched at once under a law that is followed alone, or more than eight that act.
-
-    Parameters
-    ----------
-    time, gap, velocity : float
-        Time since the start of the drive [s], distance of the tip from the stop [m] and velocity of the tip
-        towards the stop [m/s].
-    detail : str
-        Words that end the message.
-    """
+    """Two stops touched at once under a law that is followed alone, or more than eight that act."""
 
     reason = "two stops are touched at once, which is not followed under their laws,"
 
 
 class Chatter(ContactError):
-    """More impacts in one drive period than the bound allows.
-
-    Parameters
-    ----------
-    time, gap, velocity : float
-        Time since the start of the drive [s], distance of the tip from the stop [m] and velocity of the tip
-        towards the stop [m/s].
-    detail : str
-        Words that end the message.
-    """
+    """More impacts in one drive period than the bound allows."""
 
     reason = "impacts accumulate"
 
 
 class ContactTooStiff(ContactError):
-    """A contact that needs more steps than the bound allows.
-
-    Parameters
-    ----------
-    time, gap, velocity : float
-        Time since the start of the drive [s], distance of the tip from the stop [m] and velocity of the tip
-        towards the stop [m/s].
-    detail : str
-        Words that end the message.
-    """
+    """A contact that needs more steps than the bound allows."""
 
     reason = "a contact needs more integration steps than the bound allows"
 
 
 class StepTooLarge(ContactError):
-    """A time step beyond the limit of stability of its method, in flight or in the contact at hand.
-
-    Parameters
-    ----------
-    time, gap, velocity : float
-        Time since the start of the drive [s], distance of the tip from the stop [m] and velocity of the tip
-        towards the stop [m/s].
-    detail : str
-        Words that end the message.
-    """
+    """A time step beyond the limit of stability of its method, in flight or in the contact at hand."""
 
     reason = "the time step is beyond the limit of stability"
 
 
 class Diverged(ContactError):
-    """A discretised motion that has grown without bound, or one mode beyond the range of its cubic terms.
-
-    Parameters
-    ----------
-    time, gap, velocity : float
-        Time since the start of the drive [s], distance of the tip from the stop [m] and velocity of the tip
-        towards the stop [m/s].
-    detail : str
-        Words that end the message.
-    """
+    """A discretised motion that has grown without bound, or one mode beyond the range of its cubic terms."""
 
     reason = "the motion grew without bound"
 
 
 class NotPeriodic(ContactError):
-    """An orbit that should be periodic and is not.
-
-    Parameters
-    ----------
-    time, gap, velocity : float
-        Time since the start of the drive [s], distance of the tip from the stop [m] and velocity of the tip
-        towards the stop [m/s].
-    detail : str
-        Words that end the message.
-    """
+    """An orbit that should be periodic and is not."""
 
     reason = "the motion did not settle on a periodic orbit"
 
@@ -154,19 +97,8 @@ class NotPeriodic(ContactError):
 class BranchEnded(ContactError):
     """A branch of periodic orbits that ends before the event that is looked for.
 
-    Parameters
-    ----------
-    time, gap, velocity : float
-        Time since the start of the drive [s], distance of the tip from the stop [m] and velocity of the tip
-        towards the stop [m/s].
-    detail : str
-        Words that end the message.
-
-    Attributes
-    ----------
-    orbit : object
-        Last orbit of the branch.  It is None if there is no orbit to start from, or if its law has functions
-        and the error comes from another process.
+    Its attribute `orbit` is the last orbit of the branch.  It is None if there is no orbit to start from, or
+    if its law has functions and the error comes from another process.
     """
 
     reason = "the branch of periodic orbits ends"
@@ -174,15 +106,6 @@ class BranchEnded(ContactError):
 
 
 class NoDerivative(ContactError):
-    """A motion or orbit that does not depend smoothly on its start or its numbers.
-
-    Parameters
-    ----------
-    time, gap, velocity : float
-        Time since the start of the drive [s], distance of the tip from the stop [m] and velocity of the tip
-        towards the stop [m/s].
-    detail : str
-        Words that end the message.
-    """
+    """A motion or orbit that does not depend smoothly on its start or its numbers."""
 
     reason = "there is no derivative"

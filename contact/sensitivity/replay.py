@@ -84,12 +84,8 @@ class Replay:
         first = np.flatnonzero(~stays)
         self._rests = np.append(stays, [False])[first + 1]  # a stay follows the impact that begins it
         self.start, self.end = met.start[first], np.nan_to_num(met.end[first + self._rests], nan=np.inf)
-        self.approach, self._phase, self._touch = (
-            met.approach[first],
-            met.clock[first],
-            met.deviations_start[first],
-        )
-        self._released = met.deviations_end[first + self._rests]
+        self.approach, self._phase = met.approach[first], met.clock[first]
+        self._touch, self._released = met.deviations_start[first], met.deviations_end[first + self._rests]
         stuck = (met.rebound == 0.0) & np.isnan(met.peak_force) & (start is None)
         self._forgets = self._rests | stuck[first]
         self.tangent = np.zeros((2 * n + 2, len(self.vary.scalars)))
