@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from letters_spring import HERTZ, steel_leaf
 from oscillators import apart, equation_1, modes_on_stop, newton, slow
-from random_families import ALL, QUICK, judged_family
 from simulated_orbit import DELAYED, EQUATION_1, beam, on_stop, settled, touches
 
 import contact
@@ -278,14 +277,3 @@ def test_orbits_run_twice_cross_at_a_branch_point() -> None:
 def test_a_sign_that_changes_at_an_orbit_changes_once(slopes: tuple[float, ...]) -> None:
     """A branch that starts from a fold may have it to the last bit, with a slope of zero."""
     assert [passes(a, b) for a, b in pairwise(slopes)].count(True) == 1
-
-
-LONG = [(n, QUICK) for n in (3, 5, 6, 7, 12, 62, 80)] + [(n, ALL) for n in range(0, 60, 3)]
-
-
-@pytest.mark.parametrize(("number", "names"), [*((n, QUICK) for n in (9, 15, 101)), *slow(*LONG)])
-def test_random_orbits_with_several_touches(number: int, names: tuple[str, ...]) -> None:
-    """No event that is none, no step to another curve, no orbit that touches the stop more often than it
-    says."""
-    counts, wrong = judged_family(1, number, names)
-    assert not wrong and counts
