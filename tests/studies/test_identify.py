@@ -1,7 +1,6 @@
 """Records and their fits: what was put in comes out within its errors, or a sentence."""
 
 import math
-import pickle
 import re
 from dataclasses import replace
 
@@ -273,11 +272,6 @@ def test_estimates_are_rounded_to_the_second_digit_of_the_error(estimate, error,
     assert (row.value, row.interval) == (value, interval) and row.began == row.in_scene == value.split("(")[0]
 
 
-def test_no_answer_leaves_a_process_as_itself():
-    error = pickle.loads(pickle.dumps(NoAnswer("the record is too short")))
-    assert type(error) is NoAnswer and str(error) == "the record is too short" and math.isnan(error.gap)
-
-
 def test_the_example_makes_a_record_of_each_kind_and_finds_what_it_put_in(run_study, monkeypatch):
     monkeypatch.setattr(program, "THIN", (12, 12))
     ran = run_study("identify", "--quick")
@@ -289,10 +283,8 @@ def test_the_example_makes_a_record_of_each_kind_and_finds_what_it_put_in(run_st
     assert len(ran.summary["next"]) > 2
     assert {row["orbits"] for row in ran.rows("letter_orbits")} > {"p3", "p11"}
     own = [row for row in ran.rows("parameters") if row["parameter"] not in UNITS]
-    least = max(own, key=lambda row: abs(float(row["standard_error"]) / float(row["estimate"])))
-    share = 100.0 * abs(float(least["standard_error"]) / float(least["estimate"]))
-    words = f"the {least['parameter'].replace('_', ' ')} is known least: to {written(share, 1)} %"
-    assert any(words in sentence for sentence in ran.summary["findings"])
+    share = max(abs(float(row["standard_error"]) / float(row["estimate"])) for row in own)
+    assert f"is known least: to {written(100.0 * share, 1)} %" in " ".join(ran.summary["findings"])
     assert "free period" in ran.summary["findings"][1] and "correlation_gap" in ran.rows("parameters")[0]
 
 

@@ -1,6 +1,7 @@
 """Records of laboratories, by simulators that know nothing of the fit: starts are found, truth comes out."""
 
 import math
+import pickle
 from collections.abc import Sequence
 
 import numpy as np
@@ -11,7 +12,7 @@ from record_simulators import draw
 from record_trials import begun, trial_of
 
 from studies.measurement.identify.fit.search import fit
-from studies.measurement.identify.record.records import Record
+from studies.measurement.identify.record.records import NoAnswer, Record
 
 QUICK = {"equation_1": (24, 28, 11, 9, 38, 45), "two_modes": (5, 52, 22, 40, 32)}
 """Records of p1 to p6 that determine all parameters and are soon fitted.  The drive is known for even seeds;
@@ -58,3 +59,8 @@ def test_phase_offset_sign_and_lost_rows_are_no_obstacle(kind: str, seed: int, k
     assert sensor["offset"] == pytest.approx(3e-3, abs=4.0 * found.errors[found.names.index("offset")])
     low, high = found.intervals().T
     assert np.all((low <= found.estimate) & (found.estimate <= high)) and np.all(low[: len(truth)] > 0.0)
+
+
+def test_no_answer_leaves_a_process_as_itself():
+    error = pickle.loads(pickle.dumps(NoAnswer("the record is too short")))
+    assert type(error) is NoAnswer and str(error) == "the record is too short" and math.isnan(error.gap)

@@ -24,6 +24,7 @@ SLIPS = {
     "tip.plate_young_modulus_pa=210e3": "other_modulus",
     "drive.frequencies_hz=[0.0222]": "first mode",
     "drive.frequencies_hz=[22.2,139.5]": "first mode",
+    "drive.frequencies_hz=[2,98]": "has 2 Hz",
     "single_mode.free_period_s=1": "first mode",
     "single_mode.decay_rate_per_s=3560": "damping ratio",
     "damping.decay_rate_per_s=3560": "damping ratio",

@@ -59,12 +59,19 @@ def test_a_heavy_ball_on_a_clamped_disc_against_the_closed_form(seated):
         edge = a * math.cos(0.6 / n)
         sides = (lambda x, edge=edge: np.linalg.norm(x, axis=0) > edge), (lambda x: x[1] == 0.0)
         disc = named(sk.MeshTri(p, mesh.t), *sides, seat)
-        found.append(plate_modes(disc, SHEET, SHEET, Tip(mass=1e5), 1, seated=seated))
+        tip = Tip(mass=1e5, rotary_inertia=40.0 * seated)
+        found.append(plate_modes(disc, SHEET, SHEET, tip, 1 + seated, seated=seated))
     ring = a**2 - b**2 - 4.0 * (a * b * math.log(a / b)) ** 2 / (a**2 - b**2)
     closed = (ring if seated else a**2) / (16.0 * math.pi * RIGIDITY)
     found.append(found[1].extrapolated(found[0]))
     errors = np.abs(1.0 / (1e5 * np.array([modes.omega[0] for modes in found]) ** 2) / closed - 1.0)
     assert errors[1] < 0.4 * errors[0] and errors[2] < 0.3 * errors[1]
+    if seated:  # tilted: w = (A r + B r^3 + C/r + E r ln r) cos(angle), and the moment is -4 pi D E
+        rows = [[r, r**3, 1.0 / r, r * math.log(r)] for r in (a, b)]
+        rows += [[1.0, 3.0 * r * r, -1.0 / r**2, math.log(r) + 1.0] for r in (a, b)]
+        tilt = -4.0 * math.pi * RIGIDITY * np.linalg.solve(rows, [0.0, b, 0.0, 1.0])[3]
+        errors = np.abs(40.0 * np.array([modes.omega[1] for modes in found]) ** 2 / tilt - 1.0)
+        assert errors[1] < 0.4 * errors[0] and errors[2] < 0.3 * errors[1]
 
 
 def test_the_letters_spring_against_an_independent_program(letter_scene, plates):

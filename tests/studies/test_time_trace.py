@@ -36,7 +36,7 @@ def test_the_orbit_of_figure_4_the_ringing_of_its_impact_and_its_film(run_study)
     half = readout.size // 2
     # the second orbit period repeats the first: a settled orbit, and a spectrum without leakage
     assert np.max(np.abs(readout[half:] - readout[:half])) < 1e-8 * np.max(np.abs(readout))
-    assert ran.verdicts == verdicts_on("time_trace")
+    assert ran.verdicts == verdicts_on("time_trace") and summary["findings"][0].endswith(", with one impact.")
     assert len(list((ran.folder / "motion_frames").glob("*.vtu"))) == 8
     with Image.open(ran.folder / "motion.gif") as found:
         assert found.n_frames == 8 and found.size == (WIDTH, HEIGHT + GRAPH_HEIGHT)

@@ -97,13 +97,10 @@ def at_graze(ended: str, last: PeriodicOrbit) -> bool:
 
 
 def curve_through(orbit: PeriodicOrbit, family: NewtonFamily, until: float | None = None) -> AmplitudeCurve:
-    """The curve of a family through `orbit`, over the speeds of a search and from below to above its own.
-
-    By default the processor time is that of one call.
-    """
+    """The curve of a family through `orbit`, over the speeds of a search and from below to above its own."""
     low, high = (part * family.oscillator.unit_speed for part in (LEAST_SPEED, GREATEST_SPEED))
     low, high = min(low, 0.5 * orbit.speed), max(high, 2.0 * orbit.speed)
-    until = deadline() if until is None else until
+    until = until or deadline()
     return AmplitudeCurve(like=orbit, family=family, slowest=low, fastest=high, far=FAR, until=until)
 
 

@@ -157,10 +157,9 @@ def walk(curve: Curve, first: CurvePoint, longest: float, stride: float) -> Iter
             here = looked = leg.points[-1]
             edges, step = [here], SMALLEST
             continue
-        started = [
-            curve.with_first_touch(first, touch) for touch in range(0 if firsts else first.orbit.impacts)
-        ]
-        firsts += [point for point in started if point is not None]
+        if not firsts:
+            started = (curve.with_first_touch(first, touch) for touch in range(first.orbit.impacts))
+            firsts = [point for point in started if point is not None]
         closing = _closing(firsts, here, there) if count > 3 else None
         if closing is not None and closing.direction @ there.direction < 0.0:
             yield Leg([], [], "the branch comes back the other way: a step was too long")

@@ -46,7 +46,7 @@ def deadline() -> float:
 class Curve(ABC):
     """A curve of orbits through or near the orbit `like`, whose period and sizes all points share.
 
-    No point is looked for beyond the processor time `until` of this thread [s].
+    No point is looked for after the processor time `until` of this thread [s].
     """
 
     like: PeriodicOrbit
@@ -127,10 +127,7 @@ class Curve(ABC):
         return why_not or replace(there, last=to_end <= length)
 
     def with_first_touch(self, here: CurvePoint, touch: int) -> CurvePoint | None:
-        """The same orbit, started from its touch number `touch`.
-
-        It is None if the orbit is not admissible: its last flight, where the wall is ignored, is another one.
-        """
+        """The same orbit, started from its touch number `touch`; None if its last flight passes the wall."""
         if touch == 0:
             return here
         orbit, (log, states) = here.orbit, (here.orbit.record.log, here.orbit.record.states)
@@ -146,7 +143,8 @@ class Curve(ABC):
 def why_no_neighbours(a: CurvePoint, b: CurvePoint) -> str:
     """Why two points are no neighbours on one curve, in words; "" if they are.
 
-    The directions of both must lie along the way from `a` to `b`.
+    The directions of both must lie along the way from `a` to `b`.  Beside the unknowns, times and approach
+    velocities of the touches are coordinates; next to a graze one of them changes fast.
     """
     ways, chord = [a.direction, b.direction], b.x - a.x
     if a.orbit.impacts == b.orbit.impacts > 1:

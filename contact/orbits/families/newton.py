@@ -32,8 +32,8 @@ class Iterate(NamedTuple):
     """The equations of a curve of orbits at n + 1 unknowns x; the `orbit` from there need not close.
 
     `residual` is scaled, shape (n,), and `rows` are its derivatives with respect to x, (n, n + 1).
-    `parameter_slope` and `speed_slope`, (n + 1,), are the derivatives of parameter and approach speed, and
-    `start_slope` those of what the slopes of the touches refer to: (u, v, S, C) and parameters.
+    `parameter_slope` and `speed_slope`, (n + 1,), are the derivatives of parameter and approach speed.
+    `start_slope` has the derivatives of (u, v, S, C) and parameters, to which slopes of touches refer.
     """
 
     orbit: PeriodicOrbit
