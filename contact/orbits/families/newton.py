@@ -26,6 +26,7 @@ the largest multiplier, which grows as 1/v towards grazing."""
 
 MOST_ITERATIONS = 25  # bound of Newton's method: from the orbit of a kick it takes three to six iterations
 LONGEST_STEP = 0.3  # longest change of an unknown in one iteration, over its size: larger ones are shortened
+LARGEST = 700.0  # logarithm of a determinant above which only its sign is kept
 
 
 class Iterate(NamedTuple):
@@ -109,7 +110,8 @@ def newton(
     orbit = replace(here.orbit, residual=best, slope=rate / speed_rate if speed_rate else math.inf)
     touches = (orbit.record.slopes @ (here.start_slope @ direction)).T
     # with the direction in place of the last row of the matrix, its determinant grows by the factor `length`
-    determinant = float(np.linalg.det(matrix)) * length
+    sign, size = np.linalg.slogdet(matrix)
+    determinant = float(sign * math.exp(min(size + math.log(length), LARGEST)))
     return CurvePoint(
         x=x, direction=direction, orbit=orbit, rate=rate, touches=touches, determinant=determinant
     )
