@@ -7,7 +7,7 @@ and a folder each, take two hours at most.  With `--package studies` the places 
 
 Kinds: a sign flipped, a factor of two, a comparison turned, an index shifted, a term dropped.  Not places:
 text, annotations and raised errors, which compute nothing; constants of modules, fields and arguments and
-the bounds of loops, which are choices; arrays of one record.  A file of tests that runs out of `LIMIT` fails.
+the bounds of loops, which are choices; arrays of one record.  A group beyond its `LIMITS` fails.
 """
 
 import argparse
@@ -51,8 +51,8 @@ NOT_RUN = "bounded_calls|all_studies|explore|film|peers|pictures|tour"
 """Words in the names of tests that measure time, which other programs take too, or that draw."""
 EVERY = "test_every_study"
 """Small forms of all studies: last, and for a place in one study only the small form of that study."""
-LIMIT = 1200.0
-"""Seconds for a file of tests; without an error none needs five minutes, compilation included."""
+LIMITS = 1200.0, 5400.0, 1200.0
+"""Seconds for the related tests, for all others and for small forms; without an error half is enough."""
 CHECKED = "a first guess: what is proved from it does not depend on it, and else the general search goes on"
 CHOICE = "a threshold of what is listed or drawn, or a term below rounding"
 STRIDE = "a stride in search of a bracket: the tip stays below the gap far longer, and the root is the same"
@@ -175,16 +175,21 @@ def failing(tree: Path, file: str, first: str) -> str:
     if chapter := re.match(CHAPTERS, file):
         words = re.compile(rf"(?<![a-z])({first})")
         tests = [test for test in tests if words.search(test.stem + test.read_text(encoding="utf-8"))]
-    for test in sorted(tests, key=lambda test: (not re.search(first, test.stem), test.stem == EVERY)):
-        command = [sys.executable, "-m", "pytest", "-x", "-m", "not slow", "-p", "no:cacheprovider", test]
-        command += ["-k", first.replace("|", " or ")] if chapter and test.stem == EVERY else []
+    for rank in range(3):
+        group = [t for t in tests if rank == (0 if re.search(first, t.stem) else 1 + (t.stem == EVERY))]
+        if not group:
+            continue
+        command = [sys.executable, "-m", "pytest", "-x", "-m", "not slow", "-p", "no:cacheprovider", *group]
+        command += ["-k", first.replace("|", " or ")] if chapter and rank == 2 else []
         try:
-            answer = subprocess.run(command, cwd=tree, env=env, capture_output=True, text=True, timeout=LIMIT)
+            answer = subprocess.run(
+                command, cwd=tree, env=env, capture_output=True, text=True, timeout=LIMITS[rank]
+            )
         except subprocess.TimeoutExpired:
-            return f"{test.stem} takes too long"
+            return f"group {rank} takes too long"
         if answer.returncode not in (0, 5):  # 5: a file of long forms only
             found = re.search(r"^(?:FAILED|ERROR) (tests/.*?)(?: - |$)", answer.stdout, re.M)
-            return found[1] if found else f"{test.stem} ends with exit code {answer.returncode}"
+            return found[1] if found else f"group {rank} ends with exit code {answer.returncode}"
     return "NOT SEEN"
 
 
