@@ -60,7 +60,7 @@ def new_workspace(numbers):
         order, columns = max(order, own[0]), max(columns, own[1])
     flight, whole = new_flight(numbers), flow_over(numbers, numbers.period)
     series, u, v = new_series(order, columns), np.empty(numbers.size), np.empty(numbers.size)
-    return Workspace(flight, whole, series, u, v, numbers.modes, np.empty(order + 1))
+    return Workspace(flight, whole, series, u, v, numbers.modes, np.empty(series.scalars.shape[1]))
 
 
 @kernel

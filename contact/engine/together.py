@@ -162,7 +162,7 @@ def end_of_hops(numbers, run, u, v, sets):
                 sets.event[j], low = STAYS, True
     for j in range(stops.size):
         if sets.event[j] == STAYS:
-            stops[j].regime, stops[j].contact_order = SUSTAINED, 0
+            stops[j].regime = SUSTAINED
     if low:
         settle(numbers, run.clock, stops, u, v, sets)
     return rates
