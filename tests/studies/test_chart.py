@@ -12,7 +12,7 @@ from studies.experiment.chart.settled import CHAOTIC, NOT_SETTLED, PERIODIC, WIT
 from studies.shell.scene import beam_at, single_mode_at
 
 FREQUENCY = 21.50
-FEW = np.array([-0.02, -0.012, -0.004, 0.004, 0.045])
+FEW = np.array([-0.02, -0.012, -0.004, 0.004, 0.034, 0.045])
 
 
 def kind_reached(strobed, *, most_cycles=1500, cycles=400):
@@ -70,7 +70,7 @@ def test_both_orbits_have_a_basin_between_fold_and_grazing_and_one_below(letter_
 
 
 def test_small_form(run_study, monkeypatch):
-    monkeypatch.setattr("studies.experiment.chart.settled.QUICK_CUT", (FEW, 100))
+    monkeypatch.setattr("studies.experiment.chart.settled.QUICK_CUT", (FEW, 400))
     ran = run_study("chart", "--quick", "--points", "4", "8", "--side", "8")
     assert ran.code == 0
     rows = ran.rows("cut")
