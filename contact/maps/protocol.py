@@ -19,7 +19,7 @@ S = TypeVar("S")
 Jacobians = tuple[list[tuple[np.ndarray, int]], S]
 """Derivatives along an orbit, each with the number of steps that it spans, and the state at its end.
 
-A derivative that loses its rank may be given as factors that are not square, the first ones with span 0."""
+A singular one may be given as several rectangular factors, in the order of time; all but the last span 0."""
 
 
 @record

@@ -3,14 +3,14 @@
 The touches are taken from the simulation.  The time of a touch changes by -y(d)/v along a tangent d, v its
 approach velocity.  At a graze v is zero, and the motion has no derivative.  See ``docs/theory/flight.md``.
 
-A rest on the stop forgets two directions.  Let Q be an orthonormal basis of the modes with phi . Q = 0.
-Impulses act along phi alone.  The hops that are left out therefore change tangents of Q^T u and Q^T v only by
-their height, to second order in their speed.  In the rest tangents are Q a with
+A rest on the stop forgets two directions.  Let P be an orthonormal basis of the vectors orthogonal to phi.
+Impulses act along phi alone.  The last, very low hops are not computed: their effect on P^T u and P^T v is of
+second order in their speed.  During the rest the tangents of u and v are P a and P a', with
 
-    a'' = -Q^T c Q a' - Q^T omega^2 Q a.
+    a'' = -P^T c P a' - P^T omega^2 P a.
 
-The times at which it begins and ends do not matter: at the release the force is zero, and the flow is
-continuous.  A touch without rebound forgets one direction, the displacement of the tip.
+The start of the rest does not matter, because the force acts along phi, nor does its end, where the force is
+zero.  After a touch without rebound the tip has no deviation of its displacement: one direction is lost.
 """
 
 import math
@@ -56,7 +56,7 @@ class Replay:
         The oscillator, and the parameters to which the last columns of `tangent` belong; and its motion.
     start : State, optional
         The state from which the run starts.  Without it the tangents must have S = C = 0 and no parameters.
-        The motion may then rest; where it forgets directions, a basis of the others replaces `tangent`.
+        The motion may then rest.  Where directions are lost, a basis of the others replaces `tangent`.
 
     Attributes
     ----------
@@ -65,8 +65,8 @@ class Replay:
     impact_time : dict of int to ndarray, shape (columns,)
         Derivatives of the start of touch number i along each tangent [s].
     factors : list of ndarray
-        The replaced tangents in this basis: the derivative is the product of `tangent` and these, the last
-        one first.
+        Coordinates, in the new basis, of the tangents that were replaced.  The derivative is
+        ``tangent @ factors[-1] @ ... @ factors[0]``.
 
     NoDerivative is raised if the motion grazes the stop, or, with `start`, comes to rest on it.
     """

@@ -11,7 +11,7 @@ from contextlib import suppress
 from beam.parameters import Array, record
 from contact.errors import BranchEnded, ContactError
 from contact.orbits.branches.branch import SHORTER, Branch, Leg, branch_of, walk
-from contact.orbits.branches.curve import Curve, deadline, grazes
+from contact.orbits.branches.curve import LATE, Curve, deadline, grazes
 from contact.orbits.families.newton import CurvePoint, Equations
 from contact.orbits.families.newton_family import NewtonFamily
 from contact.orbits.families.touch_orbit import PeriodicOrbit
@@ -93,7 +93,7 @@ def downhill(family: NewtonFamily, start: PeriodicOrbit, until: float | None = N
 def at_graze(ended: str, last: PeriodicOrbit) -> bool:
     """Whether a branch ends where a touch becomes a graze: the first one, or another one."""
     slow = ended == "range" and last.speed < 2.0 * LEAST_SPEED * last.oscillator.unit_speed
-    return slow or (ended not in ("range", "closed") and grazes(last))
+    return slow or (ended not in ("range", "closed", LATE) and grazes(last))
 
 
 def curve_through(orbit: PeriodicOrbit, family: NewtonFamily, until: float | None = None) -> AmplitudeCurve:
@@ -129,7 +129,7 @@ def whole_branch(
     except ContactError as error:
         raise branch_ended(here, f"it cannot be followed: {error}") from error
     for ended, last in ((branch.ended_low, branch.orbits[0]), (branch.ended_high, branch.orbits[-1])):
-        if ended not in WHOLE and not grazes(last):
+        if ended not in WHOLE and (ended == LATE or not grazes(last)):
             raise branch_ended(last, f"it is lost: {ended}")
         rise = last.slope * last.speed / (1.0 + last.excess)
         if math.isclose(last.speed, curve.fastest) and rise < PROPORTIONAL:

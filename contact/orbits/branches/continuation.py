@@ -44,7 +44,7 @@ def follow(
     Returns
     -------
     Branch
-        The orbits of the branch, its events, and why it ends: at the latest after 20 s of processor time.
+        The orbits of the branch, its events, and why it ends.  It stops after 20 s of processor time.
 
     Raises
     ------

@@ -25,8 +25,8 @@ curve the difference is of second order in the step, between two curves it is no
 
 MOST_SECONDS = 20.0
 LATE = f"{MOST_SECONDS:g} s of processor time are used up"
-"""Processor time of one call.  Branches of the letter's beam take less than two seconds; one on which every
-step fails could take hours."""
+"""Processor time of one call.  Branches of the letter's spring take less than two seconds; a branch on which
+every step fails could take hours."""
 
 SHORT = 1e-9  # length of a chord below which its direction is rounding
 
@@ -127,7 +127,7 @@ class Curve(ABC):
         return why_not or replace(there, last=to_end <= length)
 
     def with_first_touch(self, here: CurvePoint, touch: int) -> CurvePoint | None:
-        """The same orbit, started from its touch number `touch`; None if its last flight passes the wall."""
+        """The same orbit, started from its touch number `touch`; None if it is not found again from there."""
         if touch == 0:
             return here
         orbit, (log, states) = here.orbit, (here.orbit.record.log, here.orbit.record.states)
@@ -143,8 +143,8 @@ class Curve(ABC):
 def why_no_neighbours(a: CurvePoint, b: CurvePoint) -> str:
     """Why two points are no neighbours on one curve, in words; "" if they are.
 
-    The directions of both must lie along the way from `a` to `b`.  Beside the unknowns, times and approach
-    velocities of the touches are coordinates; next to a graze one of them changes fast.
+    The directions of both must lie along the way from `a` to `b`.  Besides the unknowns, times and approach
+    velocities of the touches count as coordinates.  Near a graze one of them changes fast.
     """
     ways, chord = [a.direction, b.direction], b.x - a.x
     if a.orbit.impacts == b.orbit.impacts > 1:
@@ -169,7 +169,7 @@ def why_no_neighbours(a: CurvePoint, b: CurvePoint) -> str:
 def grazes(orbit: PeriodicOrbit) -> bool:
     """Whether a touch is about to be lost or to split, or a peak between touches about to become one.
 
-    A touch that lasts splits where the tip leaves the stop with no velocity.
+    A contact of finite duration splits where the tip leaves the stop with no velocity.
     """
     log = orbit.record.log
     splits = np.any((log["end"] > log["start"]) & (np.abs(log["rebound"]) < SPLIT * orbit.approach))

@@ -48,17 +48,17 @@ LEAST_TORUS = 1e-12  # the sign of a smaller test of a torus is rounding: withou
 class Event:
     """A point on a branch at which its orbits change, such as a fold.
 
-    The kind "undecided" says that a number changes sign, but that the event could not be identified.  There
-    are five reasons:
+    The kind "undecided" marks a place where an event is likely, but could not be identified.  There are five
+    reasons:
 
     - No orbit is found at the event; then `orbit` is the one before.
     - The orbit is not on the curve of its neighbours.
     - The orbit has no multiplier within 1e-6 of its place at such an event.
     - Another event, or the end of the range, is closer than 1e-6 of arc length.
-    - The number of multipliers outside the unit circle changes otherwise than the events near it say.
+    - The change in the number of multipliers outside the unit circle does not match the events found.
 
-    Period doublings and tori are not looked for where the largest multiplier exceeds about 1e8: the
-    multipliers near the unit circle are then rounding.
+    Period doublings and tori are not looked for where the largest multiplier exceeds about 1e8: rounding then
+    hides the multipliers near the unit circle.
 
     Parameters
     ----------
@@ -130,8 +130,8 @@ def rounded(orbit: PeriodicOrbit) -> bool:
 def accounted(a: CurvePoint, b: CurvePoint, events: Sequence[Event]) -> bool:
     """Whether the number of multipliers outside the unit circle changes as the events from a to b say.
 
-    It changes by two at a torus, not at a graze, and by one at any other event.  A multiplier within `CLOSE`
-    of the circle may lie on either side of it; an undecided event may change any number.
+    It changes by two at a torus, by one at other events, and not at a graze, where the curve keeps its
+    touches.  A multiplier within `CLOSE` of the circle may lie on either side of it.
     """
     if rounded(a.orbit) or rounded(b.orbit):
         return True

@@ -45,8 +45,8 @@ def fold_of(family: NewtonFamily, near: PeriodicOrbit | None = None) -> Periodic
     BranchEnded
         If there is no orbit to start from, if the branch is lost, or if its amplitude does not yet rise at
         the greatest speed.  If it has no fold, and its stable orbits end by another event, such as a torus or
-        a period doubling.  If 20 s of processor time are used up.  The `orbit` of the error is the last
-        orbit, or the orbit at that event.
+        a period doubling.  If the search takes more than 20 s of processor time.  The `orbit` of the error is
+        the last orbit, or the orbit at that event.
 
     See Also
     --------

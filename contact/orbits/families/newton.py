@@ -26,7 +26,7 @@ the largest multiplier, which grows as 1/v towards grazing."""
 
 MOST_ITERATIONS = 25  # bound of Newton's method: from the orbit of a kick it takes three to six iterations
 LONGEST_STEP = 0.3  # longest change of an unknown in one iteration, over its size: larger ones are shortened
-LARGEST = 700.0  # logarithm of a determinant above which only its sign is kept
+LARGEST = 700.0  # larger determinants are cut off at the exponential of this number
 
 
 class Iterate(NamedTuple):
@@ -34,7 +34,7 @@ class Iterate(NamedTuple):
 
     `residual` is scaled, shape (n,), and `rows` are its derivatives with respect to x, (n, n + 1).
     `parameter_slope` and `speed_slope`, (n + 1,), are the derivatives of parameter and approach speed.
-    `start_slope` has the derivatives of (u, v, S, C) and parameters, to which slopes of touches refer.
+    `start_slope` is the derivative of (u, v, S, C) and the parameters with respect to x.
     """
 
     orbit: PeriodicOrbit
@@ -52,9 +52,9 @@ Equations = Callable[[Array], Iterate]
 class CurvePoint:
     """A point of a curve of orbits: unknowns `x` and unit vector `direction` along the curve, both (n + 1,).
 
-    `rate` and `touches`, (2, impacts), are the derivatives of the parameter, and of times and approach
-    velocities of the touches, with respect to the arc length.  `determinant` belongs to the rows of
-    derivatives with the direction below them.  `last` marks the end of the range.
+    `rate` is the derivative of the parameter with respect to the arc length.  `touches`, (2, impacts), has
+    the same derivatives of times and approach velocities of the touches.  `determinant` belongs to the rows
+    of derivatives with the direction below them.  `last` marks the end of the range.
     """
 
     x: Array

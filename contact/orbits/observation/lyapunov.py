@@ -125,7 +125,7 @@ def map_exponents(
     while done < align + count:
         found, state = strobed.jacobians(state, min(AT_ONCE, align + count - done))
         for matrix, span in found:
-            # the average does not count what a transient forgets
+            # directions that are lost in the steps before the average are restored
             frame, triangle = np.linalg.qr(_finite(matrix @ frame), "complete" if done < align else "reduced")
             kept = min(triangle.shape)
             logs[:kept], logs[kept:] = logs[:kept] + _logs(np.diag(triangle)), -np.inf
@@ -179,7 +179,7 @@ def orbit_exponents(strobed: DifferentiableMap[S], state: S, m: int) -> Exponent
         for step, span in found:
             factors.append(step)
             done += span
-    # a round from where the fewest directions are left, without the multipliers that are zero
+    # from where the dimension is smallest: this leaves out multipliers that are certainly zero
     narrow = int(np.argmin([len(step) for step in factors])) + 1
     steps, start = factors[narrow:] + factors[:narrow], np.eye(len(factors[narrow - 1]))
     multipliers = np.linalg.eigvals(reduce(lambda product, step: _finite(step @ product), steps, start))
