@@ -9,7 +9,8 @@
 PYTHON ?= python3
 BIN := .venv/bin
 READY := .venv/.ready
-ONE_THREAD := OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 MKL_NUM_THREADS=1
+# one thread a process; what Python compiles is kept, without which each program starts a second later
+ALONE := OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 MKL_NUM_THREADS=1 PYTHONDONTWRITEBYTECODE=
 
 .PHONY: study site test test-slow test-generic lint clean
 
@@ -17,18 +18,18 @@ study: $(READY)
 	$(BIN)/python -m studies
 
 site: $(READY)
-	$(ONE_THREAD) $(BIN)/python -m sphinx -W --keep-going -q -j 2 -b html \
+	$(ALONE) $(BIN)/python -m sphinx -W --keep-going -q -j 2 -b html \
 		-d docs/made/doctrees docs results/site
 	@rm -f results/site/_static/scripts/*.map results/site/_static/styles/*.map
 	@echo "the documentation: results/site/index.html"
 
 # `python -m pytest` puts this folder first on the path, so that what is tested is what lies here.
 test: $(READY)
-	@$(ONE_THREAD) $(BIN)/python -m contact.warm_up --all
-	$(ONE_THREAD) $(BIN)/python -m pytest -n 2 --dist worksteal -rs -m "not slow"
+	@$(ALONE) $(BIN)/python -m contact.warm_up --all
+	$(ALONE) $(BIN)/python -m pytest -n 2 --dist worksteal -rs -m "not slow"
 
 test-slow: $(READY)
-	$(ONE_THREAD) $(BIN)/python -m pytest -n 2 --dist loadgroup -rs -m slow
+	$(ALONE) $(BIN)/python -m pytest -n 2 --dist loadgroup -rs -m slow
 
 # LAPACK and NumPy's loops round otherwise there; kernels compiled in this way are not kept.
 NOT_NUMBERS := all_studies docstrings every_study film generic_processor imports letter own_scenes page pictures docs run \
@@ -39,7 +40,7 @@ test-generic: $(READY)
 	@cache=$$(mktemp -d) && trap 'rm -rf "$$cache"' EXIT && trap 'exit 130' INT TERM && \
 	export NUMBA_CACHE_DIR="$$cache" && \
 	export NPY_DISABLE_CPU_FEATURES="$$($(BIN)/python -c '$(SIMD)')" && \
-	export NUMBA_CPU_NAME=generic NUMBA_CPU_FEATURES= OPENBLAS_CORETYPE=Prescott $(ONE_THREAD) && \
+	export NUMBA_CPU_NAME=generic NUMBA_CPU_FEATURES= OPENBLAS_CORETYPE=Prescott $(ALONE) && \
 	$(BIN)/python -m contact.warm_up --all && \
 	$(BIN)/python -m pytest -n 2 --dist worksteal -rs -m "not slow" $(NUMBERS)
 
@@ -55,7 +56,7 @@ $(READY): pyproject.toml constraints.txt
 	@$(PYTHON) -m venv .venv
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[test,docs]'
 	@echo "compiling the kernels (about a minute, once)"
-	@$(ONE_THREAD) $(BIN)/python -m contact.warm_up
+	@$(ALONE) $(BIN)/python -m contact.warm_up
 	@touch $@
 
 clean:

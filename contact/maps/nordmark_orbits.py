@@ -185,15 +185,13 @@ class MapFamily:
     def stable_range(self) -> tuple[float, float] | None:
         """The first interval of rho, from the fold upwards, in which the node is stable and admissible.
 
-        It begins at rho_m or at a second impact, and ends at a second impact, at a multiplier -1, or never.
-        Returns None where there is no fold or no such interval.
+        It begins at rho_m or at a second impact, and ends at a second impact or never: the multiplier -1
+        comes to inadmissible nodes only.  Returns None where there is no fold or no such interval.
         """
         at_fold = self.fold()
         if at_fold is None:
             return None
         ends = [root for k in range(1, self.m) for root in positive_roots(*self._height(k))]
-        flip = 1.0 + self.determinant + self.trace_limit
-        ends += [self.last / (2.0 * flip)] if flip < 0.0 else []
         marks = [at_fold.speed, *sorted(root for root in ends if root > at_fold.speed), math.inf]
         for low, high in pairwise(marks):
             orbit = self.orbit(0.5 * (low + high) if high < math.inf else 2.0 * low)

@@ -192,6 +192,10 @@ def save(figure: Figure, folder: Path, name: str) -> tuple[Path, Path]:
     paths, dots = (folder / f"{name}.png", folder / f"{name}.pdf"), DOTS_PER_INCH[style.get()]
     traces = ("Software",), ("Creator", "Producer", "CreationDate")
     with matplotlib.rc_context(STYLE):
+        if layout := figure.get_layout_engine():  # once for both
+            figure.set_dpi(dots)
+            layout.execute(figure)
+            figure.set_layout_engine(None)
         for path, names in zip(paths, traces, strict=True):
             stream, without = io.BytesIO(), dict.fromkeys(names)
             figure.savefig(stream, format=path.suffix[1:], dpi=dots, metadata=without)

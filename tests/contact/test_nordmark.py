@@ -1,6 +1,7 @@
 """Nordmark's map and its maximal orbits, against 50-digit arithmetic, iteration and a linearised impact."""
 
 import math
+import random
 from itertools import pairwise
 
 import mpmath as mp
@@ -129,6 +130,35 @@ def test_a_second_impact_ends_the_stable_range(frequency: float, period: int, y_
         node = MapFamily(made, period).at_rho(rho)[-1]
         later = made.iterate(node.states[0], rho, 3000)[-period:]
         assert np.allclose(np.sort(later[:, 0]), np.sort(node.states[:, 0]), atol=1e-8) is same
+
+
+def test_stable_ranges_are_those_of_a_row_of_nodes() -> None:
+    """Random maps, some with flips, some with a range that begins above the fold."""
+    draw, kinds = random.Random(4), set()
+    for _ in range(150):
+        made = letter_map(
+            draw.uniform(0.668, 0.9999) / T,
+            decay_rate=10 ** draw.uniform(-2, 2),
+            restitution=draw.random(),
+            y_line=draw.choice(["printed", "corrected"]),
+            delay=draw.choice([0.0, 1e-4, 1e-3]),
+        )
+        family = MapFamily(made, draw.randint(1, 9))
+        if not (at_fold := family.fold()):
+            continue
+        row = [family.orbit(at_fold.speed * x) for x in np.geomspace(1.0 + 1e-6, 1e3, 150)]
+        held, ends = [one.stable and one.admissible for one in row], family.stable_range() or (0.0, 0.0)
+        kinds |= {"flip"} if not row[-1].stable else set()
+        if not any(held):
+            kinds.add("none")
+            assert sum(ends[0] < one.rho < ends[1] for one in row) == 0
+            continue
+        first = held.index(True)
+        last = held.index(False, first)
+        kinds.add("late" if first else "from the fold")
+        assert (row[first - 1].rho if first else at_fold.rho) <= ends[0] <= row[first].rho
+        assert row[last - 1].rho <= ends[1] <= row[last].rho
+    assert kinds == {"flip", "none", "late", "from the fold"}
 
 
 def test_band_edges() -> None:

@@ -101,8 +101,10 @@ def test_every_sample_is_filled_in_whatever_the_length():
 
 def test_a_sample_that_was_not_written_is_an_error(monkeypatch):
     monkeypatch.setattr(event_loop, "advance", lambda *_: event_loop.DONE)
-    with pytest.raises(ContactError, match="not written down"):
-        simulate(spring(1, newton(0.5)), duration=0.1, times=[0.05])
+    at_rest = spring(1, newton(0.5))
+    with pytest.raises(ContactError, match="not written down") as error:
+        simulate(at_rest, duration=0.1, times=[0.05])
+    assert error.value.gap == at_rest.stop.gap
 
 
 def test_the_end_of_millions_of_steps_is_written_down():

@@ -139,12 +139,15 @@ def test_ball_on_a_shaken_table_comes_to_rest_at_the_end_of_its_hops(e, f, z):
     assert impacts.peak_force[stay] == pytest.approx(max(pressing), rel=1e-5)
 
 
-def test_impulse_of_a_delayed_rebound_holds_the_tip_against_spring_and_drive():
-    """phi I = -(change of q' + c q + omega^2 times the integral of q), with the drive's own part."""
-    law = DelayedRestitution(restitution=0.4, delay=2e-3)
+@pytest.mark.parametrize("delay", [2e-3, 0.03])
+def test_impulse_of_a_delayed_rebound_holds_the_tip_against_spring_and_drive(delay):
+    """phi I = -(change of q' + c q + omega^2 times the integral of q), with the drive's own part; also of a
+    wait over a strobe."""
+    law = DelayedRestitution(restitution=0.4, delay=delay)
     oscillator = modes_on_stop([154.0], [30.0], [10.0], [0.1], law=law, drive=22.0).with_excess(0.3)
     whole = simulate(oscillator, periods=3)
     touch, release = whole.impacts.start[0], whole.impacts.end[0]
+    assert (touch // oscillator.period < release // oscillator.period) == (delay > 2e-3)
     edges = [touch - 3e-3, touch, release, release + 3e-3]
     model, drive, area = oscillator.model, oscillator.driven, 0.0
     for low, high in pairwise(edges):

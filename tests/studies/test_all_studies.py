@@ -19,7 +19,7 @@ from studies.shell.scene import read_scene
 @pytest.fixture
 def run_all(tmp_path, monkeypatch, capsys):
     """`run_all(*argv)`: its answer and what it says of two studies; the second refuses the free period."""
-    monkeypatch.setattr(every_study, "studies", lambda: ["time_trace", "breakdown"])
+    monkeypatch.setattr(every_study, "studies", lambda: ["sweep", "breakdown"])
 
     def run(*argv: str) -> tuple[dict, str]:
         scene = ["--set", "single_mode.free_period_s=0.06", "--set", "modes.count=2"]
@@ -34,17 +34,17 @@ def run_all(tmp_path, monkeypatch, capsys):
 
 def test_a_failure_is_printed_and_what_is_stored_is_not_run_again(run_all, tmp_path):
     answer, err = run_all()
-    assert (answer["exit_code"], answer["exit_codes"]) == (3, {"time_trace": 0, "breakdown": 2})
+    assert (answer["exit_code"], answer["exit_codes"]) == (3, {"sweep": 0, "breakdown": 2})
     assert "python -m studies breakdown: " in err and "free_period_s" in err
     assert (tmp_path / "report" / "index.html").exists()
     measured, known = programs.run_times(tmp_path / "run_times.csv"), programs.run_times()
-    every_study.keep_times({"time_trace": 7.0}, True, tmp_path / "table.csv")
-    assert programs.run_times(tmp_path / "table.csv")["time_trace"] == (known["time_trace"][0], 7.0)
-    assert measured["time_trace"][1] > 0.0 and measured["breakdown"] == known["breakdown"]
-    manifest = json.loads((tmp_path / "time_trace" / "manifest.json").read_text())
+    every_study.keep_times({"sweep": 7.0}, True, tmp_path / "table.csv")
+    assert programs.run_times(tmp_path / "table.csv")["sweep"] == (known["sweep"][0], 7.0)
+    assert measured["sweep"][1] > 0.0 and measured["breakdown"] == known["breakdown"]
+    manifest = json.loads((tmp_path / "sweep" / "manifest.json").read_text())
     answer, _ = run_all()
-    assert (answer["stored"], answer["exit_codes"]) == (["time_trace"], {"breakdown": 2})
-    assert json.loads((tmp_path / "time_trace" / "manifest.json").read_text()) == manifest
+    assert (answer["stored"], answer["exit_codes"]) == (["sweep"], {"breakdown": 2})
+    assert json.loads((tmp_path / "sweep" / "manifest.json").read_text()) == manifest
 
 
 @pytest.mark.parametrize(

@@ -125,3 +125,5 @@ def test_small_form(run_study, monkeypatch):
     assert {row["excess"] for row in ran.rows("pairs")} == {"0.0", "0.00025"}
     assert ran.summary["first_merged"]["white"] == 10 and ran.verdicts == verdicts_on("last_period")
     assert "from p10 on" in ran.summary["findings"][1]
+    (needed,) = [one for one in ran.summary["findings"] if "need a free period" in one]
+    assert " ms shorter than" in needed  # by which p10 and not p11 lies at 23.40 Hz

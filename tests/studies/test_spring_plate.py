@@ -12,7 +12,7 @@ from beam import BRASS, StripSection, Tip
 from studies.shell.scene import model_of, read_scene
 from studies.spring.shape.__main__ import compare_plate
 from studies.spring.shape.model_error import COARSE, models_of, plates_of
-from studies.spring.shape.plate import plate_modes
+from studies.spring.shape.plate import LONGEST, half_u, plate_modes
 
 SHEET = StripSection(material=BRASS, width=12e-3, thickness=1e-3)
 NU = BRASS.poissons_ratio
@@ -91,6 +91,15 @@ def test_plates_have_period_and_damping_of_the_beam(letter_scene, plates):
     for model in others:
         assert model.free_period == pytest.approx(beam.free_period, rel=1e-12)
         assert model.decay_rate[0] == pytest.approx(3.56)
+
+
+def test_every_cell_of_the_u_is_divided_as_often_as_asked():
+    sizes = dict(leg=0.1, radius=6e-3, width=0.012, seat=3e-3, covered=0.05, cells=(1, 2))
+    once, thrice = (half_u(**sizes, times=times) for times in (1, 3))
+    assert thrice.nelements == 9 * once.nelements
+    (x, z), near = once.p, 1e-9
+    leg = np.unique(x[(x < 0.0) & (abs(z - z.max()) < near)].round(9))
+    assert np.diff(leg).max() <= LONGEST * 0.006 / 3 + near
 
 
 def test_a_spring_that_is_no_flat_u_goes_without_the_plate():

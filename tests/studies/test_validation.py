@@ -33,6 +33,8 @@ def test_every_source_is_compared_and_one_that_fails_is_a_failed_row(run_study, 
     assert "but 2 agree" in ran.summary["findings"][0]
     assert wrong == ["frequency at 0.00650108 J", "right beam, mode 5"]
     assert [row["verdict"] for row in ran.rows("rows")] == [row["verdict"] for row in ran.summary["rows"]]
+    (free,) = [row for row in ran.summary["rows"] if row["source"] == "SDND122"]
+    assert f"closed form {free['ours']:.9f} Hz" in free["note"]
 
 
 @pytest.mark.parametrize("w", [1.0, 0.7, 0.3])
