@@ -46,14 +46,13 @@ def modes_of(name: str, law: ContactLaw) -> tuple[int, ...]:
 
 
 def calls(long: bool) -> Iterator[tuple[str, int, Entry, Case]]:
-    """Law, number of modes, entry and case of every call, or of each entry under two laws drawn by a seed."""
-    draw, drawn = random.Random(4), set()
+    """Law, number of modes, entry and case of every call, or of each entry under a law drawn by a seed."""
+    draw, drawn, laws = random.Random(4), set(), LAWS | EXTREME
+    small = [law for law in laws if 12 not in MODES.get(law, ()) or law == "dissipative"]
     for call in sorted({entry.public_name for entry in CALLS}):
-        for table in (LAWS, EXTREME):
-            name = draw.choice([law for law in table if 12 not in MODES.get(law, ()) or law == "dissipative"])
-            modes = draw.choice([n for n in modes_of(name, table[name]) if n < 12])
-            drawn.add((name, modes, call))
-    for name, law in (LAWS | EXTREME).items():
+        name = draw.choice(small)
+        drawn.add((name, draw.choice([n for n in modes_of(name, laws[name]) if n < 12]), call))
+    for name, law in laws.items():
         for modes in modes_of(name, law):
             cases = cases_of(oscillator_of(law, modes))
             for entry in CALLS:

@@ -1,6 +1,7 @@
 """Branches never jump, miss no event at their default step, and come back."""
 
 import time
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from random_families import ALL, QUICK, STEPS, judged_family
 from simulated_orbit import settled
 
 from contact import ContactLaw, HertzContact, HuntCrossley, ImpactOscillator, LinearContact, orbits
+from contact.orbits.branches import events
 
 LONG = [(n, QUICK) for n in (3, 5, 6, 7, 12, 62, 80)] + [(n, ALL) for n in range(0, 60, 3)]
 LONG += [(n, STEPS) for n in range(60, 100)]
@@ -73,3 +75,10 @@ def test_a_search_ends_where_rounding_hides_multipliers_and_after_its_time(monke
     family, used = orbits.Shooting(oscillator=equation_1(21.5), m=4), time.thread_time()
     branch = orbits.follow(family, family.at_speed(60.0), step=1e-3)
     assert "processor time" in branch.ended_high and time.thread_time() - used < 2.0
+
+
+def test_a_point_between_two_neighbours_is_a_neighbour_of_both(monkeypatch) -> None:
+    monkeypatch.setattr(events, "why_no_neighbours", lambda a, b: "far" if abs(a.x[0] - b.x[0]) > 1 else "")
+    arc = events.Arc(None, *(SimpleNamespace(x=np.array([x])) for x in (0.0, 1.5)))
+    for x, same in ((0.2, False), (0.7, True), (1.2, False)):
+        assert arc.on_curve(SimpleNamespace(x=np.array([x]))) == same

@@ -138,6 +138,7 @@ def test_a_model_without_an_answer_is_infinitely_far_off():
 
 @pytest.mark.parametrize("count", [3, *slow(7)])
 def test_the_study_leaves_a_row_a_question(run_study, monkeypatch, count):
+    assert {name.partition(" ")[0] for name, _ in questions(LETTER, False)} == set(QUANTITIES)
     few = questions(LETTER.replace({"drive.frequencies_hz": (21.5,)}), True)[:count]
     monkeypatch.setattr("studies.methods.adequacy.__main__.questions", lambda scene, quick: few)
     ran = run_study("adequacy", "--quick", "--set", "drive.frequencies_hz=[21.5]")

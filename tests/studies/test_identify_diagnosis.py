@@ -225,7 +225,7 @@ def test_residuals_that_repeat_with_the_orbit_contradict_a_fit(fitted):
     random, times, lines = np.random.default_rng(3), fitted.record.rows[:, 0], np.arange(9, 80)
     noise = random.standard_normal(times.size)
     phases = 2.0 * np.pi * (np.outer(base * lines, times) + random.random((lines.size, 1)))
-    for part, likely in ((0.0, True), (0.08, False)):
+    for part, likely in ((0.0, True), (0.05, False)):
         fun = np.append(noise + part * np.cos(phases).sum(axis=0), np.zeros(fitted.unknowns.size))
         solved = Found(fitted.unknowns, fun, np.eye(1), 0.0)
         assert (chance_of(fitted.problem, solved, False) > TOO_SMALL) == likely
