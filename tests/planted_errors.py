@@ -55,6 +55,7 @@ LIMITS = 1200.0, 5400.0, 1200.0
 """Seconds for the related tests, for all others and for small forms; without an error half is enough."""
 CHECKED = "a first guess: what is proved from it does not depend on it, and else the general search goes on"
 CHOICE = "a threshold of what is listed or drawn, or a term below rounding"
+SMALL = "3e-6 of the drive's amplitude; the formula is good to 1.6e-5"
 STRIDE = "a stride in search of a bracket: the tip stays below the gap far longer, and the root is the same"
 EQUIVALENT = {
     "contact/flight/bounds.py: under = rate * rate - 2 * (2.0 * curvature * (height + goal))": CHECKED,
@@ -83,6 +84,13 @@ EQUIVALENT = {
     "studies/experiment/sweep/__main__.py: step = 1 if start == REST else size": "only parts that are stored",
     "studies/experiment/soft_wall/model.py: rbit.excess, bool(abs(orbit.multipliers[1]": "a pair",
     "studies/shell/sweep.py: write_atomically(path, json_text(settings).encode())": "a newline",
+    "contact/one_mode/period_table.py: .0 + z * (1.0 / 24.0 + z * (1.0 / 720.0 - z * (1.0 / 40": CHOICE,
+    "contact/touch/time_series.py: speed = math.sqrt(scale * scale)": "only shorter steps",
+    "contact/engine/together.py: late = 2 * (-height": CHOICE,
+    "studies/measurement/noise/rates.py: gether = (row @ matrix @ spread @ row + 2 * (row": SMALL,
+    "studies/experiment/hysteresis/model.py: places[-1] = edges.upper - 2 * (EDGE": CHOICE,
+    "studies/physics/two_parameters.py: olumns = (restitution, np.where(delay > 2 * (SHOR": CHOICE,
+    "studies/spring/modes.py: ball = int(np.argmin(np.abs(along.s)))": CHOICE,
     "contact/touch/linear.py: for n in range(time_series.ORDER - 1 - 1):": "the last order is below rounding",
 }
 """Errors that change nothing observable: the beginning of "file: line with the error", and why."""

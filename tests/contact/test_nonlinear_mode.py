@@ -165,7 +165,8 @@ def test_a_motion_beyond_its_cubic_terms_is_no_number(start: tuple[float, float]
         if cubic == U or abs(start[0]) + abs(start[1]) > 1.0:
             with pytest.raises(Diverged, match="without bound"):
                 one.orbit(np.array(start), 5)
-    with pytest.raises(Diverged):
+    with pytest.raises(Diverged) as error:
         mode(U).at(30.0).orbit(mode(U).steady(), 50)
+    assert error.value.gap > 2.0 * GAP  # away from the stop
     with pytest.raises(NotPeriodic):
         mode(U).at(30.0).steady()

@@ -120,3 +120,13 @@ def test_points_that_mirror_each_other_are_hit_together(name):
     if name == "two points":
         known = [-0.4287297747445646, 0.0, -0.005770101775189248, 0.0]
         np.testing.assert_allclose([*run.end.displacement, *run.end.velocity], known, rtol=0, atol=1e-10)
+
+
+def test_a_rest_of_points_that_mirror_each_other_begins_when_that_of_one_does():
+    """The hops that are left last 6e-6; the pull changes by enough to move their end by 1e-11."""
+    drive, e = HarmonicDrive(frequency=0.1 / (2 * np.pi), amplitude=300.0), 0.9
+    pair = simulate(modes([[1.0, 0.5], [1.0, -0.5]], e, 0.1, **TWO_MODES, drive=drive), periods=2).impacts
+    alone = simulate(modes([[1.0]], e, 0.1, omega=[1.0], decay=[0.1], gamma=[1.0], drive=drive), periods=2)
+    rests = [each.start[each.kind == ImpactKind.STAY] for each in (pair, alone.impacts)]
+    assert rests[1].size == 2
+    np.testing.assert_allclose(rests[0].reshape(-1, 2), rests[1][:, None] + [0, 0], rtol=0, atol=1e-12)

@@ -14,7 +14,7 @@ from page_judge import assert_balanced, assert_fit, seen
 from studies import letter, report
 from studies.shell import plotting
 from studies.shell.page import judged_points, page_sentence, write_page
-from studies.shell.page.words import prose
+from studies.shell.page.words import prose, quantity
 from studies.shell.programs import studies
 from studies.shell.run import Run
 from studies.shell.scene import Scene, read_scene
@@ -125,6 +125,13 @@ def test_the_page_of_every_study_names_no_command_for_the_rest(tmp_path, letter_
         run.close("done", {"rows": []})
     assert "studies --all" not in write_page(tmp_path)[0].read_text().partition("<h2")[0]
     assert "makes the rest" not in page_sentence(tmp_path)
+
+
+def test_numbers_have_the_units_that_a_person_would_choose():
+    given = [[0.0105, 2.0], 2e-6, 5.15e-3, 2.1e11, -3e4, 0.0, 22.2]
+    units = ["m", "s", "kg", "Pa", "N/m", "m", "Hz"]
+    found = ["10.5 mm, 2 m", "2 µs", "5.15 g", "210 GPa", "−30 kN/m", "0 m", "22.2 Hz"]
+    assert [quantity(value, unit) for value, unit in zip(given, units, strict=True)] == found
 
 
 @pytest.mark.parametrize("damage", [b"", b"[1]", b"\xff\xfe", b'{"verdicts": 3, "findings": 1}'])

@@ -14,10 +14,18 @@ from contact.integrators import CentralDifference, Exact
 from studies.letter import TIME_TRACE_EXCESS
 from studies.methods.peers import missing_solvers
 from studies.methods.work_precision import gradients
+from studies.methods.work_precision.__main__ import sentences
 from studies.methods.work_precision.costs import heyoka_orbit
-from studies.methods.work_precision.methods import EXACT, STEPPED, Setting, Sweep, sweeps_for
-from studies.methods.work_precision.model import Reference, in_turns, missed_share, reference_of, rows_of
-from studies.methods.work_precision.problems import driven_problem, hertz_beam, linear_beam
+from studies.methods.work_precision.methods import EXACT, SAMPLED, STEPPED, Setting, Sweep, sweeps_for
+from studies.methods.work_precision.model import (
+    Measured,
+    Reference,
+    in_turns,
+    missed_share,
+    reference_of,
+    rows_of,
+)
+from studies.methods.work_precision.problems import HERTZ, driven_problem, hertz_beam, linear_beam
 from studies.methods.work_precision.reference import extended_motion
 from studies.shell.scene import read_scene, single_mode_at
 
@@ -127,3 +135,18 @@ def test_bare_heyoka_is_on_the_same_orbit(letter_scene) -> None:
     orbit, taylor = heyoka_orbit(oscillator)
     orbit(2000)
     assert np.min(np.abs(cycle - taylor.state[0] * oscillator.model.phi[0])) < 1e-8 * oscillator.stop.gap
+
+
+def test_the_exact_method_is_compared_with_methods_that_miss_no_touch() -> None:
+    same = Measured(
+        problem=HERTZ, method="", family=STEPPED, setting="", value=1.0, certified=False, error=1e-9
+    )
+    exact = replace(same, family=EXACT, missed=0.0, time_per_period_us=10.0)
+    rows = [exact, replace(exact, family=STEPPED, time_per_period_us=50.0)]
+    rows += [replace(same, missed=0.2, time_per_period_us=20.0), replace(rows[1], time_per_period_us=None)]
+    rows += [
+        replace(exact, family=STEPPED, method=SAMPLED, missed=lost, time_per_period_us=15.0)
+        for lost in (0, 0.3)
+    ]
+    said = " ".join(sentences(rows))
+    assert all(words in said for words in ("takes 10 µs", "at least 5 times", "miss 30 %"))
