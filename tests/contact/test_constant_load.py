@@ -103,3 +103,10 @@ def test_a_load_moves_the_rest_position_or_is_refused(name):
 def test_a_load_moves_a_free_body_that_touches_the_stop_at_rest():
     body = modes_on_stop(0.0, gap=0.0, load=-9.81)
     assert simulate(body, duration=0.1).end.displacement[0] == pytest.approx(-0.5 * 9.81 * 0.01, rel=1e-14)
+
+
+def test_free_modes_fall_with_their_own_loads_over_whole_periods():
+    loads = np.array([-9.81, -3.0])
+    two = modes_on_stop([0.0, 0.0], phi=[1.0, 0.5], gap=0.1, drive=(20.0, 0.01), load=loads)
+    end = simulate(two, periods=4).end
+    np.testing.assert_allclose(end.displacement, 0.5 * loads * 0.2**2, rtol=1e-14)

@@ -9,7 +9,7 @@ import pytest
 from oscillators import before_stops, newton
 from scipy.optimize import nnls
 
-from contact import HarmonicDrive, ImpactKind, ImpactOscillator, Regime, State, simulate
+from contact import HarmonicDrive, ImpactKind, ImpactOscillator, LinearContact, Regime, State, simulate
 
 
 def modes(rows, e, gaps, *, omega=0.0, decay=0.0, gamma=0.0, **more) -> ImpactOscillator:
@@ -123,10 +123,21 @@ def test_points_that_mirror_each_other_are_hit_together(name):
 
 
 def test_a_rest_of_points_that_mirror_each_other_begins_when_that_of_one_does():
-    """The hops that are left last 6e-6; the pull changes by enough to move their end by 1e-11."""
-    drive, e = HarmonicDrive(frequency=0.1 / (2 * np.pi), amplitude=300.0), 0.9
-    pair = simulate(modes([[1.0, 0.5], [1.0, -0.5]], e, 0.1, **TWO_MODES, drive=drive), periods=2).impacts
-    alone = simulate(modes([[1.0]], e, 0.1, omega=[1.0], decay=[0.1], gamma=[1.0], drive=drive), periods=2)
-    rests = [each.start[each.kind == ImpactKind.STAY] for each in (pair, alone.impacts)]
+    """The hops that are left last some 1e-6; the damping, which slows them, moves their end by 1e-11."""
+    numbers = dict(gamma=[1.0, 0.0], decay=[8.0, 8.0], drive=HarmonicDrive(frequency=0.02, amplitude=300.0))
+    pair = modes([[1.0, 0.5], [1.0, -0.5]], 0.9, 0.1, omega=[1.0, 2.5], **numbers)
+    alone = modes([[1.0, 0.0]], 0.9, 0.1, omega=[1.0, 2.5], **numbers)
+    runs = [simulate(each, periods=2).impacts for each in (pair, alone)]
+    rests = [run.start[run.kind == ImpactKind.STAY] for run in runs]
     assert rests[1].size == 2
     np.testing.assert_allclose(rests[0].reshape(-1, 2), rests[1][:, None] + [0, 0], rtol=0, atol=1e-12)
+
+
+def test_a_rest_begins_as_if_a_dashpot_that_is_pressed_too_were_in_the_mode():
+    law, begun = LinearContact(stiffness=10.0, damping=2.0), State(displacement=[0.099], velocity=[0.0])
+    stops = [(0.1, newton(0.9)), (0.05, law)]
+    pressed = before_stops([1.0], [0.1], [0.0], [[1.0], [1.0]], stops, load=[0.8])
+    stiffer = before_stops([np.sqrt(11.0)], [2.1], [0.0], [[1.0]], stops[:1], load=[1.3])
+    runs = [simulate(each, begun, duration=5.0).impacts for each in (pressed, stiffer)]
+    rests = [run.start[run.kind == ImpactKind.STAY] for run in runs]
+    np.testing.assert_allclose(*rests, rtol=0, atol=1e-12)
