@@ -26,6 +26,7 @@ from pathlib import Path
 from typing import Any
 
 ROOT = Path(__file__).resolve().parent.parent
+TABLE = ROOT / "tests/equivalent_errors.csv"
 FILES = {
     "contact/flight/*": "flight|crossing|polynomial|derivatives",
     "contact/touch/* contact/sensitivity/*": "contact_laws|delayed|derivatives|shooting|time_stepping",
@@ -53,46 +54,7 @@ EVERY = "test_every_study"
 """Small forms of all studies: last, and for a place in one study only the small form of that study."""
 LIMITS = 1200.0, 5400.0, 1200.0
 """Seconds for the related tests, for all others and for small forms; without an error half is enough."""
-CHECKED = "a first guess: what is proved from it does not depend on it, and else the general search goes on"
-CHOICE = "a threshold of what is listed or drawn, or a term below rounding"
-SMALL = "3e-6 of the drive's amplitude; the formula is good to 1.6e-5"
-STRIDE = "a stride in search of a bracket: the tip stays below the gap far longer, and the root is the same"
-EQUIVALENT = {
-    "contact/flight/bounds.py: under = rate * rate - 2 * (2.0 * curvature * (height + goal))": CHECKED,
-    "contact/flight/bounds.py: a = -c * v - 2 * (o2 * u)": CHECKED,
-    "contact/one_mode/one_impact.py: jerk = n.decay * free + n.stiffness * q": CHECKED,
-    "contact/one_mode/one_impact.py: rse = 1.0 / (rate + x * x * (0.5 * jerk - x * snap / 6.0))": CHECKED,
-    "contact/one_mode/one_impact.py: d += d * (y2 * ratio)": CHECKED,
-    "contact/one_mode/one_impact.py: * inverse * (x * (jerk + 0.5 * x * snap)))": CHECKED,
-    "contact/one_mode/period_table.py: 0 / (omega * omega), drive_time_squared=2 * (1.0": CHECKED,
-    "contact/one_mode/loop.py: x += 0.5 * jerk * x * x / deceleration": CHECKED,
-    "contact/touch/rests.py: near += 2 * (abs(other[n]) * power)": CHECKED,
-    "contact/virtual_motion.py: near, far = (far, far + 2 * (direction * step))": STRIDE,
-    "contact/virtual_motion.py: step = 2 * (self.numbers.period / SAMPLES)": STRIDE,
-    "contact/orbits/branches/events.py: if not 0.0 < t < 1.0:": "more orbits are tried for a pair of folds",
-    "studies/methods/stability/implicit_energy.py: place = index * (math.sqrt(5.0) + 1": "modulo 1",
-    "studies/measurement/next_measurement/model.py: d(orbit, plan), bool(np.isfinite(cov[0, 1": "so are all",
-    "studies/experiment/trace.py: loud = 2 * (CLEAR": CHOICE,
-    "studies/methods/stability/missed_crossings.py: bel: 0 if": CHOICE,
-    "studies/experiment/soft_wall/closed_forms.py: lost = z ** 3 * (1 / 3 - z * z * (1 / 5))": CHOICE,
-    "studies/measurement/identify/fit/search.py: ONE) if 2.0 < base * (times[-1] - times[1])": CHOICE,
-    "studies/measurement/identify/fit/diagnosis.py: if 2 * (abs(slope)": CHOICE,
-    "contact/engine/together.py: (height) <= tip_rounding(other, u, v) + 2 * (": CHOICE,
-    "contact/orbits/families/single_impact.py: .kick.leaves, CLOSING * self.duration + 2 *": CHOICE,
-    "contact/touch/newton.py: eleration <= 0.0 or energy * lost > max(2 * (LOWEST_HOP": CHOICE,
-    "contact/touch/power.py: t[n] != 0.0 and (root[0] != 0.0 or root[0] != 0.0)": "root[0] is never zero",
-    "studies/experiment/sweep/__main__.py: step = 1 if start == REST else size": "only parts that are stored",
-    "studies/experiment/soft_wall/model.py: rbit.excess, bool(abs(orbit.multipliers[1]": "a pair",
-    "studies/shell/sweep.py: write_atomically(path, json_text(settings).encode())": "a newline",
-    "contact/one_mode/period_table.py: .0 + z * (1.0 / 24.0 + z * (1.0 / 720.0 - z * (1.0 / 40": CHOICE,
-    "contact/touch/time_series.py: speed = math.sqrt(scale * scale)": "only shorter steps",
-    "contact/engine/together.py: late = 2 * (-height": CHOICE,
-    "studies/measurement/noise/rates.py: gether = (row @ matrix @ spread @ row + 2 * (row": SMALL,
-    "studies/experiment/hysteresis/model.py: places[-1] = edges.upper - 2 * (EDGE": CHOICE,
-    "studies/physics/two_parameters.py: olumns = (restitution, np.where(delay > 2 * (SHOR": CHOICE,
-    "studies/spring/modes.py: ball = int(np.argmin(np.abs(along.s)))": CHOICE,
-    "contact/touch/linear.py: for n in range(time_series.ORDER - 1 - 1):": "the last order is below rounding",
-}
+EQUIVALENT = {row["begins_with"]: row["why"] for row in csv.DictReader(TABLE.open(encoding="utf-8"))}
 """Errors that change nothing observable: the beginning of "file: line with the error", and why."""
 
 TURNED: dict[type, Any] = {ast.Lt: ast.Gt, ast.LtE: ast.GtE, ast.Eq: ast.NotEq}
