@@ -88,7 +88,7 @@ def recorder_for(plan: Plan, n_modes: int, stops: int = 1) -> Recorder:
     """An empty recorder for the strobes and times of `plan`, and a number of stops."""
     touches, passed = new_touches(64, n_modes, stops), plan.last - plan.first  # the log grows by itself
     strobes, counts = np.empty((passed, 2 * n_modes)), np.zeros(passed, dtype=np.int64)
-    samples = np.empty((plan.times.size, 2 * n_modes))
+    samples = np.zeros((plan.times.size, 2 * n_modes))  # the last may stay as they are
     return Recorder(*touches[:3], strobes, counts, plan.sample_stretch, plan.sample_clock, samples)
 
 

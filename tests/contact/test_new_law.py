@@ -125,7 +125,6 @@ def test_a_new_law_is_one_file_one_line_and_one_export(form, tmp_path):
     exports.write_text(exports.read_text().replace("\n__version", export, 1))
     environment = {k: v for k, v in os.environ.items() if k != "NUMBA_CACHE_DIR"}
     environment["PYTHONPATH"] = os.pathsep.join([str(tmp_path), str(ROOT / "tests/contact")])
-    environment["NUMBA_OPT"] = "0"  # sooner compiled
     command = [sys.executable, "-c", PROGRAM, form]
     done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr

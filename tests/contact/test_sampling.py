@@ -107,6 +107,21 @@ def test_a_sample_that_was_not_written_is_an_error(monkeypatch):
     assert error.value.gap == at_rest.stop.gap
 
 
+def test_nothing_is_computed_with_samples_that_were_not_written(monkeypatch):
+    """A signalling NaN, which stands in unused memory now and then, is a warning when it is added to."""
+    empty = np.empty
+
+    def unused(shape, dtype=float, **more):
+        made = empty(shape, dtype, **more)
+        if made.dtype == float:
+            made.view(np.uint64)[...] = 0x7FF0000000000001
+        return made
+
+    monkeypatch.setattr(np, "empty", unused)
+    run = simulate(spring(1, newton(0.5), drive=(20.0, 1e-4)), duration=0.1, times=[0.03, 0.1])
+    assert run.displacement[-1] == run.end.displacement
+
+
 def test_the_end_of_millions_of_steps_is_written_down():
     """Rounding puts the end of this run two billionths of a step behind the last grid point."""
     oscillator = spring(1, LinearContact(stiffness=2e4), drive=(21.5, 1e-4))

@@ -60,7 +60,7 @@ CASES = [
 def test_what_was_put_in_comes_out_from_a_start_far_away(made, name, kind, velocity, names):
     """All within three and a half standard errors: by chance one in some hundred seeds is not."""
     oscillator = made[name]
-    record = synthetic(kind, oscillator, seed=7, velocity=velocity, periods=10 if name == "beam" else 20)
+    record = synthetic(kind, oscillator, seed=7, velocity=velocity, periods=10)
     begun = oscillator if kind == "transitions" else far_from(oscillator)
     others = {n: v.value for n, v in parameters_of(oscillator).items() if n not in names}
     found = fit(record, with_values(begun, others), names)
