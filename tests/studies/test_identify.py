@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from oscillators import slow
 
 from beam import InvalidValue
 from contact import DelayedRestitution, HuntCrossley, LinearContact, Stop, simulate
@@ -56,7 +57,9 @@ CASES = [
 ]
 
 
-@pytest.mark.parametrize(("name", "kind", "velocity", "names"), CASES)
+@pytest.mark.parametrize(
+    ("name", "kind", "velocity", "names"), [*CASES[:4], CASES[5], CASES[7], *slow(*CASES[4::2])]
+)
 def test_what_was_put_in_comes_out_from_a_start_far_away(made, name, kind, velocity, names):
     """All within three and a half standard errors: by chance one in some hundred seeds is not."""
     oscillator = made[name]

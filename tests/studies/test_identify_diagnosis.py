@@ -169,9 +169,10 @@ def right(found, amplitude):
 
 
 CHAOS = {"excess": 0.2, "rows": 1200, "rate": 2000.0, "begin": 5.0, "frequency": 22.4}
+MOTIONS = [(CHAOS, "does not repeat"), *slow(({"excess": 0.02}, "transient"))]
 
 
-@pytest.mark.parametrize(("motion", "note"), [({"excess": 0.02}, "transient"), (CHAOS, "does not repeat")])
+@pytest.mark.parametrize(("motion", "note"), MOTIONS)
 def test_a_motion_that_does_not_repeat_is_fitted_as_such(scene_of_eq1, motion, note):
     """The fit of chaos begins next to an unstable orbit."""
     record, amplitude = measured(**motion, rest=True)

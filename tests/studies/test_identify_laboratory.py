@@ -34,7 +34,8 @@ def test_truth_is_found_without_knowing_it(kind: str, seeds: Sequence[int]) -> N
 
 
 @pytest.mark.parametrize(
-    ("kind", "seed", "known"), [("equation_1", 9, True), ("equation_1", 2, False), ("two_modes", 22, True)]
+    ("kind", "seed", "known"),
+    [("equation_1", 9, True), ("equation_1", 2, False), *slow(("two_modes", 22, True))],
 )
 def test_phase_offset_sign_and_lost_rows_are_no_obstacle(kind: str, seed: int, known: bool) -> None:
     """The reading is turned, shifted by 3 mm and begins at 7 s; one row in ten is lost.
