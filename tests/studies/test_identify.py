@@ -48,11 +48,11 @@ def truth(oscillator, names):
 CASES = [
     ("one_mode", "strobe", False, NAMES),
     ("one_mode", "strobe", True, (*NAMES, "amplitude")),
-    ("one_mode", "displacement", False, (*NAMES, "frequency")),
+    ("one_mode", "motion", False, (*NAMES, "frequency")),
     ("waiting", "strobe", True, ("free_period", "decay_rate", "restitution", "delay")),
-    ("waiting", "displacement", False, (*NAMES, "delay", "amplitude")),
+    ("waiting", "motion", False, (*NAMES, "delay", "amplitude")),
     ("beam", "strobe", False, ("tip_mass", "gap")),
-    ("beam", "displacement", False, ("free_period", "decay_rate", "gap", "stiffness", "tip_mass")),
+    ("beam", "motion", False, ("free_period", "decay_rate", "gap", "stiffness", "tip_mass")),
     ("one_mode", "transitions", False, ("free_period", "restitution")),
 ]
 
@@ -79,7 +79,7 @@ def test_what_was_put_in_comes_out_from_a_start_far_away(made, name, kind, veloc
 @pytest.mark.parametrize(("name", "kind", "velocity", "names"), CASES)
 def test_the_jacobian_is_that_of_differences(made, name, kind, velocity, names):
     oscillator = made[name]
-    record = synthetic(kind, oscillator, velocity=velocity, periods=15 if kind == "displacement" else 20)
+    record = synthetic(kind, oscillator, velocity=velocity, periods=15 if kind == "motion" else 20)
     prediction, at = predictions_of(record, oscillator, names, SENSOR)[0]
     exact, known, n = prediction.jacobian(at, prediction.extra, names), parameters_of(at), len(names)
     begun = np.append([known[name].value for name in names], prediction.extra)
@@ -96,7 +96,7 @@ def test_the_jacobian_is_that_of_differences(made, name, kind, velocity, names):
 
 def test_restitution_and_delay_trade_off_and_the_profile_shows_it(made):
     waiting, names = made["waiting"], (*NAMES, "delay")
-    found = fit(synthetic("displacement", waiting, seed=3), waiting, names)
+    found = fit(synthetic("motion", waiting, seed=3), waiting, names)
     assert found.correlations[3, 4] > 0.95
     walk = found.walk("delay")
     sides = [walk.side(way * found.reach) for way in (-1.0, 1.0)]
@@ -199,7 +199,7 @@ def test_an_example_that_cannot_be_fitted_is_a_failed_cell(run_study, monkeypatc
 
 def test_the_command_line_takes_a_record_and_leaves_a_scene(run_study, tmp_path, made):
     """Symbols, a number of the sensor, and stamps from 1.7e9 s on: times then count from the first row."""
-    record = synthetic("displacement", made["one_mode"], seed=2, noise=5e-6, periods=20)
+    record = synthetic("motion", made["one_mode"], seed=2, noise=5e-6, periods=20)
     rows = (f"{1.7e9 + t:.7f},{x:.9g}" for t, x in record.rows)
     (tmp_path / "a.csv").write_text("\n".join(["# frequency_hz = 22.2", "time_s,x_m", *rows]))
     ran = run_study("identify", "--quick", str(tmp_path / "a.csv"), "--fit", "T", "gap", "tau", "offset")
@@ -217,7 +217,7 @@ def test_the_command_line_takes_a_record_and_leaves_a_scene(run_study, tmp_path,
 
 def test_a_gap_that_no_scene_has_is_refused_before_any_table(run_study, tmp_path, made):
     """Micrometres below x_m, where the gap of the scene is near the true one or far from it."""
-    record = synthetic("displacement", made["one_mode"], seed=2, periods=10)
+    record = synthetic("motion", made["one_mode"], seed=2, periods=10)
     (tmp_path / "a.csv").write_text(replace(record, rows=record.rows * [1.0, 1e6], amplitude=None).text())
     for more in ((), ("--set", "stop.gap_m=0.009")):
         ran = run_study("identify", str(tmp_path / "a.csv"), "--fit", "gap", "tau", "amplitude", *more)
@@ -250,7 +250,7 @@ def test_the_help_lists_every_name_with_its_unit_and_symbol(run_study, made):
 def test_a_model_that_is_too_small_is_no_answer_and_leaves_no_table(run_study, tmp_path):
     """The beam's record by Eq. (1)."""
     beam = beam_at(read_scene("letter", ["modes.count=4"]), 22.2).with_excess(1e-3)
-    (tmp_path / "mine.csv").write_text(synthetic("displacement", beam, seed=7, periods=20).text())
+    (tmp_path / "mine.csv").write_text(synthetic("motion", beam, seed=7, periods=20).text())
     ran = run_study("identify", str(tmp_path / "mine.csv"))
     assert ran.code == 3 and re.search(r"too small .* free_period 40\.\d+ ms", ran.err)
     assert {path.name for path in ran.folder.iterdir()} == {"columns.json", "manifest.json", "summary.json"}

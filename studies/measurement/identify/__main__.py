@@ -73,14 +73,14 @@ from studies.shell.study import Run, study
 STEADY = ("free_period", "decay_rate", "gap", "amplitude")
 USUAL: Mapping[Kind, tuple[str, ...]] = {
     "strobe": ("free_period", "decay_rate", "gap", "restitution", "stiffness"),
-    "displacement": (*STEADY, "restitution", "delay", "stiffness", "frequency"),
+    "motion": (*STEADY, "restitution", "delay", "stiffness", "frequency"),
     "transitions": ("free_period", "restitution"),
 }
 """The parameters that are fitted to a kind of record by default, as far as the oscillator has them."""
 
 EXAMPLES: Mapping[Kind, Description] = {
     "strobe": "one_mode",
-    "displacement": "two_parameters",
+    "motion": "two_parameters",
     "transitions": "one_mode",
 }
 FREQUENCY_HZ, SEED = letter.TRANSITION_HZ[5], 1996  # of the example
@@ -161,7 +161,7 @@ def identify(
         given = {record.stem: (read, oscillator)}
         if fit:
             require_names(in_full(fit), oscillator, more=SENSOR)
-            if read.kind != "displacement" and (lost := [name for name in fit if name in SENSOR]):
+            if read.kind != "motion" and (lost := [name for name in fit if name in SENSOR]):
                 raise InvalidValue(f"fit names {lost[0]}, which only a record of displacement has")
             if {"scale", "gap", "amplitude"} <= {*in_full(fit)}:
                 raise InvalidValue("fit names scale, gap and amplitude: give one of the three")
@@ -211,7 +211,7 @@ def answered(one: Fit) -> Fit:
     if not one.too_small:
         return one
     why = ["the model is too small for the record"]
-    if one.record.kind == "displacement":
+    if one.record.kind == "motion":
         (times, values), residuals = one.record.rows.T, one.residuals[:, 0]
         frequency, period = one.oscillator.driven.frequency, one.problem.prediction.m
         why = wanders(times, values, residuals, frequency)

@@ -46,7 +46,7 @@ def _record(left: Any, middle: Any, one: Fit) -> None:
     unit, fine, words = (1e2, 1e2, "end of $p_m$") if table else (1e3, 1e6, "tip")
     seen, residuals = one.record.observed[:, 0], one.residuals[:, 0]
     fitted = seen - residuals
-    if kind == "displacement":
+    if kind == "motion":
         place, across = 1e3 * rows[:, 0], ("time", "ms")
         left.plot(place, unit * seen, **DOTS, color=plotting.BLUE, label="record")
         left.plot(place, unit * fitted, color=plotting.BLACK, linewidth=0.6, label="fit")

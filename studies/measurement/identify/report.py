@@ -142,7 +142,7 @@ def notes_of(found: Fit) -> list[str]:
     if given and fitted and not 1.0 / UNLIKE < fitted / given < UNLIKE:
         both = f"{1e3 * fitted:.4g} mm contradicts the given {1e3 * given:.4g} mm"
         notes.append(f"the fitted amplitude of {both}")
-    if record.kind == "displacement":
+    if record.kind == "motion":
         times, period = record.rows[:, 0], found.oscillator.period
         rows = period / float(np.median(np.diff(times)))
         if abs(rows - round(rows)) * (times[-1] - times[0]) < period:

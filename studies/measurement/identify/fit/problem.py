@@ -134,7 +134,7 @@ def chance_of(problem: Problem, solved: Found, known: bool) -> float:
         means = np.array([rows[k::period].mean(axis=0) for k in range(period)])
         within = float(np.sum((rows - means[np.arange(len(rows)) % period]) ** 2))
         found += _beyond(float(residuals @ residuals), within, freedom - residuals.size + means.size, freedom)
-    if kind == "displacement":
+    if kind == "motion":
         size, off = residuals.size, residuals - residuals.mean()
         lagged = np.array([off[k:] @ off[:-k] for k in range(1, LAGS + 1)]) / (off @ off)
         box = size * (size + 2) * np.sum(lagged**2 / (size - np.arange(1, LAGS + 1)))

@@ -58,7 +58,7 @@ def fit(
     require_names(names, oscillator)
     known = noise is not None or len(record.columns) == 4
     unit = noise or (letter.AMPLITUDE_STABILITY if record.kind == "transitions" else READ_OUT)
-    if record.kind == "displacement":
+    if record.kind == "motion":
         return _displacement(*sound(record, oscillator), tuple(names), free, unit, known)
     starts = predictions_of(record, oscillator, tuple(names), free)
     return _solved(starts, tuple(names), oscillator, unit, known)

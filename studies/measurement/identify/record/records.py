@@ -21,18 +21,20 @@ from contact.orbits import Shooting, onset_orbit
 from studies import letter
 
 Array = NDArray[np.float64]
-Kind = Literal["strobe", "displacement", "transitions"]
+Kind = Literal["strobe", "motion", "transitions"]
 
 READ_OUT = 0.5e-6  # noise of the read-out of synthetic records, and the default unit of residuals [m]
 HEADINGS: dict[tuple[str, ...], Kind] = {
     ("x_m",): "strobe",
     ("x_m", "v_m_per_s"): "strobe",
-    ("time_s", "x_m"): "displacement",
+    ("time_s", "x_m"): "motion",
+    ("time_s", "v_m_per_s"): "motion",
+    ("time_s", "a_m_per_s2"): "motion",
     ("frequency_hz", "period", "excess"): "transitions",
     ("frequency_hz", "period", "excess", "error"): "transitions",
 }
 NOTES = ("frequency_hz", "amplitude_m")
-FEWEST = {"strobe": 4, "displacement": 40, "transitions": 1}  # rows that each kind needs
+FEWEST = {"strobe": 4, "motion": 40, "transitions": 1}  # rows that each kind needs
 LARGEST, LATEST = 1e6, 1e15  # largest size of a number, in the unit of its column, and of a time [s]
 FAR = 100.0  # first stamp over the span of the record, above which times begin at the first row
 
@@ -73,7 +75,7 @@ class Record:
     def observed(self) -> Array:
         """What a model has to give, shape (n_rows, 1 or 2): x [m] and perhaps v [m/s], or excess [1]; a view
         of the rows."""
-        first = {"strobe": 0, "displacement": 1, "transitions": 2}[self.kind]
+        first = {"strobe": 0, "motion": 1, "transitions": 2}[self.kind]
         return self.rows[:, first : len(self.columns) if self.kind == "strobe" else first + 1]
 
     def units(self, noise: float) -> Array:
@@ -128,7 +130,7 @@ def read_record(path: Path) -> Record:
     record = Record(columns=heading, rows=rows, frequency=notes.get(NOTES[0]), amplitude=notes.get(NOTES[1]))
     _check(record, path)
     first, last = rows[[0, -1], 0]
-    if record.kind == "displacement" and abs(first) > FAR * (last - first):
+    if record.kind == "motion" and abs(first) > FAR * (last - first):
         record = replace(record, rows=rows - [first, 0.0], origin=float(first))
     return record
 
@@ -149,7 +151,7 @@ def _check(record: Record, path: Path) -> None:
     rows, fewest = record.rows, FEWEST[record.kind]
     if len(rows) < fewest:
         raise InvalidValue(f"the record {path} has {len(rows)} rows; one of its kind needs {fewest} at least")
-    if record.kind == "displacement":
+    if record.kind == "motion":
         falling = np.flatnonzero(np.diff(rows[:, 0]) <= 0.0)
         if falling.size:
             row = int(falling[0]) + 2
