@@ -30,6 +30,12 @@ def prefixed(size: float, unit: str) -> tuple[float, str]:
     return 10.0**power, {"mkg": "g", "\u00b5kg": "mg"}.get(found, found)
 
 
+def in_unit(value: float, unit: str, digits: int = 4) -> str:
+    """A number with its unit, as a person writes them: 0.02 mm."""
+    scale, words = prefixed(abs(value), unit)
+    return f"{value / scale:.{digits}g} {words}"
+
+
 def minus(text: str) -> str:
     """The text of a number with a minus sign in place of a hyphen."""
     return text.replace("-", "−")

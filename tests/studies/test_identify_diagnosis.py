@@ -72,7 +72,7 @@ def test_residuals_say_what_contradicts_the_model(lab):
     spikes[SPIKES] = 0.2 * gap
     table = {
         rf"a line at {hum:.3g}.* Hz of .*: hum": sound + 0.02 * gap * np.sin(2.0 * math.pi * hum * t),
-        r"a drift of 0\.02 mm/s": sound + 2.0e-5 * t,
+        "a drift of 20 µm/s": sound + 2.0e-5 * t,
         rf"8 of {t.size} rows are outliers, the first in row 18": sound + spikes,
         "readings stick at .* saturates": np.minimum(sound, 0.95 * gap),
         rf"lines fall .* low-pass near {8.0 * f / 10:.0f}\d Hz": lab.motion(t, 8.0 * f) + lab.noise,

@@ -1,7 +1,8 @@
 """What residuals show that is no noise: a hum, a drift, a filter, a wrong drive, a transient or chaos.
 
 The lines of an orbit are at multiples of its `base` frequency [Hz]. Noise is independent from row to row.
-Residuals are readings less predictions. Times in s, all others in m, each of shape (rows,).
+Residuals are readings less predictions. Times in s, all others in the unit of the record, each of shape
+(rows,).
 """
 
 import math
@@ -14,12 +15,13 @@ from scipy.signal import medfilt
 from studies.measurement.identify.record.records import Array
 from studies.measurement.identify.record.soundness import ALIKE, off_neighbours, poor_rows
 from studies.measurement.identify.record.spectrum import count_of, orbit_of, peaks, repetition, scatter
+from studies.shell.digits import in_unit
 
 SURE = 8.0  # standard deviations of an estimate that is no chance
 MANY = 6000  # rows by which a filter is seen
 
 
-def added(times: Array, residuals: Array, base: float, part: float = 0.0) -> list[str]:
+def added(times: Array, residuals: Array, base: float, part: float = 0.0, unit: str = "m") -> list[str]:
     """A hum and a drift that last, the same in each third of a record, beside what repeats with the orbit; a
     hum that has this `part` of the variance."""
     span, rows, found = float(times[-1] - times[0]), times.size, list[str]()
@@ -33,10 +35,10 @@ def added(times: Array, residuals: Array, base: float, part: float = 0.0) -> lis
     tone, apart = np.mean(tones), abs(at - base * max(1, round(at / base))) * span
     lasts = apart > 1.0 and max(np.abs(tones - tone)) < 0.5 * abs(tone)
     if lasts and abs(tone) / math.sqrt(2.0) > max(SURE / math.sqrt(rows), part) * rest.std():
-        found = [f"a line at {at:.4g} Hz of {1e3 * abs(tone):.2g} mm that is no harmonic of the orbit: hum"]
+        found = [f"a line at {at:.4g} Hz of {in_unit(abs(tone), unit, 2)} that is no harmonic of the orbit: hum"]
     slopes = [np.polyfit(t[third], (rest + slope * t)[third], 1)[0] / slope for third in thirds]
     if abs(slope) * math.sqrt(rows / 12) > SURE * rest.std() and min(slopes) > 0.5:
-        found.append(f"a drift of {1e3 * slope / span:.2g} mm/s")
+        found.append(f"a drift of {in_unit(slope / span, unit, 2)}/s")
     return found
 
 
@@ -80,13 +82,15 @@ def wanders(times: Array, values: Array, residuals: Array, frequency: float) -> 
     return []
 
 
-def contradictions(times: Array, values: Array, residuals: Array, frequency: float, m: int) -> list[str]:
+def contradictions(
+    times: Array, values: Array, residuals: Array, frequency: float, m: int, unit: str = "m"
+) -> list[str]:
     """What residuals show that are no noise; the drive is at `frequency` [Hz], a `period` 0 is unknown."""
     m = m or repetition(times, values, frequency)
     base, bare = frequency / m, np.abs(residuals - medfilt(residuals, 5))
     off = 3.0 * off_neighbours(times, values)[0]
     stray = np.minimum(bare / (1.4826 * np.median(bare[bare > 0.0])), off)
-    found = added(times, residuals, base) + poor_rows(times, values, stray, frequency)
+    found = added(times, residuals, base, unit=unit) + poor_rows(times, values, stray, frequency, unit)
     found += walked(times, values, frequency, m)
     found = found or filtered(times, values, values - residuals, base)
     found = found or wanders(times, values, residuals, frequency)

@@ -74,6 +74,12 @@ def _solved(
     """The best fit from these starts; it begins again where a profile finds a better one."""
     problem, found = best([Problem(one, at, names, unit) for one, at in starts], known)
     for _ in range(AGAIN):
+        clear = problem.prediction.cleared(*problem.at(found.x))
+        if clear is None:
+            break
+        problem = Problem(clear, problem.oscillator, names, unit)
+        found = problem.solve(found.x)
+    for _ in range(AGAIN):
         result = judged(problem, found, oscillator, known)
         walks, lowest = _walked(result)
         if lowest is None:
@@ -123,7 +129,7 @@ def _displacement(
                 return replace(other, record=replace(other.record, notes=(*record.notes, note)))
     if found is None:
         base = linear.frequency / repetition(times, x, linear.frequency)
-        hum = added(times, x, base, TONE) if 2.0 < base * (times[-1] - times[0]) else []
+        hum = added(times, x, base, TONE, record.unit) if 2.0 < base * (times[-1] - times[0]) else []
         reasons = [*hum, str(failure or "no motion like the record's was found")]
         raise NoAnswer("; ".join(reasons))
     return found

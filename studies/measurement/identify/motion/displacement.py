@@ -35,7 +35,8 @@ from numpy.typing import NDArray
 from beam import InvalidValue
 from contact import ImpactKind, ImpactOscillator, State, Trajectory, simulate
 from contact.orbits import motion_derivatives
-from studies.measurement.identify.motion.predictions import Prediction, shapes_changed
+from studies.measurement.identify.record.channel import clear_of, rates, readings, readings_changed
+from studies.measurement.identify.motion.predictions import Prediction
 from studies.measurement.identify.record.records import Array, NoAnswer, Record
 from studies.physics.parameters import changes_of, parameters_of
 
@@ -92,17 +93,18 @@ class Displacement(Prediction):
         sensor: Mapping[str, float],
         free: Sequence[str],
         *,
+        whole: Record | None = None,
         m: int = 0,
         clock: float = 0.0,
         first: int = 0,
     ) -> None:
         model, gap = oscillator.model, oscillator.stop.gap
-        self.record, self.times = record, record.rows[:, 0]
+        self.whole, self.record, self.times = whole or record, record, record.rows[:, 0]
         self.m, self.clock, self.first = m, clock, first
         tip = gap / np.abs(model.phi)
         self.scale = np.append(tip, tip * model.omega)
         self.orbit = Orbit(state=np.ravel(start))
-        sizes = {"phase": 1.0, "offset": gap, "scale": 1.0}
+        sizes = {"phase": 1.0, "offset": gap * oscillator.driven.angular_frequency**record.order, "scale": 1.0}
         own = np.empty(0) if m else self.scale
         others = np.tile(np.arange(model.n_modes) != model.leading_mode, 2)[: own.size]
         self.sensor, self.fixed = tuple(free), dict(sensor)
@@ -127,10 +129,21 @@ class Displacement(Prediction):
 
     def part(self, rows: slice) -> Self:
         """The prediction of some rows."""
+        return self._of(replace(self.record, rows=self.record.rows[rows]))
+
+    def _of(self, record: Record) -> Self:
         found = copy.copy(self)
-        found.record = replace(self.record, rows=self.record.rows[rows])
-        found.times, found._last = found.record.rows[:, 0], None
+        found.record, found.times, found._last = record, record.rows[:, 0], None
         return found
+
+    def cleared(self, oscillator: ImpactOscillator, extra: Array) -> Self | None:
+        """The prediction of all rows but those next to its impacts, if these are others than before."""
+        if not self.m:
+            return None
+        hits, w = self.run(oscillator, extra)[0].impacts, oscillator.driven.angular_frequency
+        away = self.reading(extra)["phase"] / w
+        record = clear_of(self.whole, hits.start - away, hits.end - away, self.m * oscillator.period, 0.0)
+        return None if np.array_equal(record.rows, self.record.rows) else self._of(record)
 
     def reading(self, extra: Array) -> dict[str, float]:
         """The numbers of the sensor."""
@@ -189,7 +202,9 @@ class Displacement(Prediction):
     def values(self, oscillator: ImpactOscillator, extra: Array) -> Array:
         """The readings."""
         (run, place), sensor = self.run(oscillator, extra), self.reading(extra)
-        return (sensor["offset"] + sensor["scale"] * oscillator.tip(run.displacement)[place[:-1]])[:, None]
+        q, v, times = (one[place[:-1]] for one in (run.displacement, run.velocity, run.time))
+        read = readings(self.record, oscillator, times, rates(oscillator, times, q, v))[0]
+        return (sensor["offset"] + sensor["scale"] * read)[:, None]
 
     def jacobian(self, oscillator: ImpactOscillator, extra: Array, names: Sequence[str]) -> Array:
         """Derivatives of `values`."""
@@ -198,13 +213,15 @@ class Displacement(Prediction):
         times, place = np.unique(np.append(rows, end), return_inverse=True)
         changes, periods = changes_of(oscillator, names), _periods(end, oscillator)
         found = motion_derivatives(oscillator, state, changes, periods=periods, times=times)
-        tip = np.tensordot(found.states[:, :n], oscillator.model.phi, (1, 0))[place[:-1]]
-        own = tip[:, 2 * n :] + found.trajectory.displacement[place[:-1]] @ shapes_changed(changes, n)
-        tips = tip[:, : 2 * n]
         run, scale = found.trajectory, self.reading(extra)["scale"]
-        x, later = (oscillator.tip(one)[place[:-1]] for one in (run.displacement, run.velocity))
+        at, q, v = (one[place[:-1]] for one in (times, run.displacement, run.velocity))
+        motion = rates(oscillator, at, q, v)
+        x, later = readings(self.record, oscillator, at, motion)
+        tip = readings_changed(self.record, oscillator, changes, at, motion, found.states[place[:-1]])
+        own, tips = tip[:, 2 * n :], tip[:, : 2 * n]
         moved = [name == "frequency" for name in names]
-        rate = _rate(oscillator, state)
+        q, v = state.displacement[None], state.velocity[None]
+        rate = np.ravel(rates(oscillator, np.array([state.time]), q, v)[1:3])
         if self.m:
             own = own + np.outer((self.times - rows) / f * later, moved)
             last = found.states[place[-1]]
@@ -225,13 +242,3 @@ class Displacement(Prediction):
 def _periods(end: float, oscillator: ImpactOscillator) -> int:
     """Whole drive periods up to a time."""
     return math.ceil(end / oscillator.period + 1e-9)
-
-
-def _rate(oscillator: ImpactOscillator, state: State) -> Array:
-    """Modal velocities and accelerations off the stop."""
-    model, drive = oscillator.model, oscillator.driven
-    w = drive.angular_frequency
-    base = -drive.amplitude * w * w * math.sin(w * state.time)
-    pull = -model.participation * base + (0.0 if oscillator.load is None else oscillator.load)
-    rate = pull - model.decay_rate * state.velocity - model.omega**2 * state.displacement
-    return np.append(state.velocity, rate)

@@ -14,11 +14,13 @@ from scipy.optimize import least_squares
 
 from contact import ImpactOscillator
 from studies.measurement.identify.motion.displacement import SENSOR, Displacement
+from studies.measurement.identify.record.channel import response
 from studies.measurement.identify.record.kicks import poles
 from studies.measurement.identify.record.records import Array, NoAnswer, Record
 from studies.measurement.identify.record.soundness import off_neighbours
 from studies.measurement.identify.record.spectrum import peaks, scatter
 from studies.physics.parameters import with_values
+from studies.shell.digits import in_unit
 
 NAMES = ("free_period", "decay_rate", "amplitude", "frequency")  # all that such a motion depends on
 RESPONSE = 3  # how many of the first enter by the response alone
@@ -68,7 +70,7 @@ class Linear:
     def require_decay(self, rate: float) -> None:
         """NoAnswer if a free mode with this decay rate [1/s] hardly decays."""
         if self.decays and rate * (self.times[-1] - self.times[0]) < LASTS:
-            tone = f"a line at {1.0 / self.free_period:.4g} Hz of {1e3 * abs(self.free):.2g} mm"
+            tone = f"a line at {1.0 / self.free_period:.4g} Hz of {in_unit(abs(self.free), self.record.unit, 3)}"
             raise NoAnswer(f"{tone} does not decay: hum, or a free mode that needs a longer record")
 
     def start(
@@ -80,15 +82,18 @@ class Linear:
         if not kept or (not self.decays and len(alike) > 1):
             blind = f"separate {' from '.join(alike)}" if kept else f"determine {', '.join(lost)}"
             motion = f"{'a' if self.decays else 'a steady'} motion without impacts at {self.frequency:.4g} Hz"
-            height = f"of amplitude {1e3 * abs(self.steady):.3g} mm"
+            height = f"of amplitude {in_unit(abs(self.steady), self.record.unit, 3)}"
             raise NoAnswer(f"{motion} {height}: it cannot {blind}; there is no impact in the record")
-        found = {"frequency": self.frequency, "gap": AWAY * float(np.abs(self.values).max())}
+        order = self.record.order
+        largest = float(np.abs(self.values).max()) / (2.0 * math.pi * self.frequency) ** order
+        found = {"frequency": self.frequency, "gap": AWAY * largest}
         own = {"free_period": self.free_period, "decay_rate": self.decay_rate} if self.decays else {}
         at = with_values(oscillator, found | {name: own[name] for name in own if name in kept})
-        base = self.steady / at.tip_response()
+        base = self.steady / response(at, self.record)
         if "amplitude" in kept:
             at = with_values(at, {"amplitude": abs(base)})
-        state = state_of(at, base, self.free * self.decays)
+        free_of = complex(poles(at)[at.model.leading_mode]) ** order
+        state = state_of(at, base, self.free / free_of * self.decays)
         turn = 1j * np.exp(-2j * math.pi * self.frequency * self.times[0])  # a sine from time zero on
         read = {"offset": float(self.offset), "phase": float(np.angle(turn * base))}
         sensor = {name: read.get(name, one) if name in free else one for name, one in SENSOR.items()}

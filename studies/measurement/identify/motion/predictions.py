@@ -52,6 +52,10 @@ class Prediction(ABC):
         """A copy, whose searches leave this one where it is."""
         return copy.copy(self)
 
+    def cleared(self, oscillator: ImpactOscillator, extra: Array) -> Self | None:
+        """Another choice of rows by where the impacts are; None if there is no better one."""
+        return None
+
     @abstractmethod
     def values(self, oscillator: ImpactOscillator, extra: Array) -> Array:
         """The predicted rows, shape of `record.observed`; ContactError or Refusal where there are none."""

@@ -20,6 +20,7 @@ from beam import Refusal
 from contact import ContactError, ImpactOscillator, SingleImpactOrbit, State, simulate
 from studies.measurement.identify.motion.displacement import SENSOR, Displacement
 from studies.measurement.identify.motion.predictions import Prediction, Strobes, Transitions, family_of
+from studies.measurement.identify.record.channel import clear_of
 from studies.measurement.identify.record.kicks import Kicked, kicked_motions
 from studies.measurement.identify.record.records import Array, NoAnswer, Record
 from studies.measurement.identify.record.soundness import require_strobe_units, require_units
@@ -36,6 +37,7 @@ TRIED, WORSE = 6, 30.0  # kicked motions that are tried; ratio of chi^2 to the b
 FACTORS = (0.1, 10.0, 0.3, 3.0, 0.03, 30.0)  # on numbers of a contact that no kick shows
 RESTITUTIONS = (0.1, 0.3, 0.6, 0.9)  # tried beside the ones of the record and the scene
 ASIDE = (0.97, 0.99, 0.997, 0.999, 1.001, 1.003, 1.01, 1.03)  # on gap or amplitude where no orbit closes
+WIDE = 0.01  # drive periods about a kick in which velocities and accelerations are left out at first
 LOOKED = 200  # times of an orbit at which the tip may be farthest from the stop, where its state begins
 
 
@@ -137,16 +139,14 @@ def _searched(
 def _displacement(
     record: Record, oscillator: ImpactOscillator, names: Sequence[str], free: Sequence[str]
 ) -> Sequence[tuple[Prediction, ImpactOscillator]]:
-    times, x = record.rows.T
-    motions = kicked_motions(times, x, oscillator, record.frequency)
+    motions = kicked_motions(record, oscillator)
     if motions[0].without - motions[0].cost < SEEN:
         return []
-    likely = [one for one in motions if one.reading()["gap"] > 0.0 and one.steady != 0.0]
+    likely = [one for one in motions if one.reading()["gap"] > 0.0 and one.base != 0.0]
     if not likely:
         raise NoAnswer("the record repeats, but not as a motion with impacts at one gap")
-    at, gap, steady = likely[0].oscillator, likely[0].reading()["gap"], likely[0].steady
-    lengths = {"gap": gap, "amplitude": 2.0 * abs(steady / at.tip_response())}
-    period = {"free_period": parameters_of(at)["free_period"].value}
+    lengths = {"gap": likely[0].reading()["gap"], "amplitude": abs(likely[0].base)}
+    period = {"free_period": parameters_of(likely[0].oscillator)["free_period"].value}
     require_units(record, oscillator, period if "scale" in free else lengths | period)
     likely = [one for one in likely if one.cost < WORSE * likely[0].cost + SEEN][:TRIED]
     starts = [starts_at(record, motion, oscillator, names, free, i > 0) for i, motion in enumerate(likely)]
@@ -166,7 +166,7 @@ def starts_at(
     at, read = motion.oscillator, motion.reading()
     sign, read["restitution"] = read["sign"], min(max(read["restitution"], 0.01), 0.99)
     known = parameters_of(oscillator)
-    drive = complex(2j * motion.steady * sign / at.tip_response())
+    drive = complex(1j * motion.base * sign)
     held = [name for name in ("gap", "amplitude") if name not in names and "scale" in free]
     size = ({"gap": read["gap"], "amplitude": abs(drive)}[held[0]] / known[held[0]].value) if held else 1.0
     read |= {"gap": read["gap"] / size, "amplitude": abs(drive / size)}
@@ -194,9 +194,10 @@ def starts_at(
     given = [with_values(oscillator, {"frequency": begun.driven.frequency})]
     given = [] if few or not oscillator.driven.amplitude else given
     moved = next((name for name in ("gap", "amplitude") if name in names), None)
+    clear = clear_of(record, motion.kicks, motion.kicks, lasting, WIDE * at.period)
     pairs = list[tuple[Displacement, ImpactOscillator]]()
     for one in [*(_behind(one, start, lowest, lasting) for one in tried), *given]:
-        prediction = Displacement(record, one, start, sensor, free, m=motion.m, clock=lowest)
+        prediction = Displacement(clear, one, start, sensor, free, whole=record, m=motion.m, clock=lowest)
         pairs.append((prediction, _closing(prediction, one, moved)))
     return pairs
 

@@ -15,7 +15,7 @@ from studies.measurement.identify.motion.displacement import Displacement
 from studies.measurement.identify.motion.linear import Linear, state_of
 from studies.measurement.identify.motion.starts import TRIED, starts_at
 from studies.measurement.identify.record.kicks import Search, kicked_motions, poles
-from studies.measurement.identify.record.records import Array
+from studies.measurement.identify.record.records import Array, NoAnswer
 from studies.physics.parameters import with_values
 
 BELOW = 0.98  # gaps below which a row is off the stop
@@ -32,12 +32,14 @@ def unsteady_starts(
     Its state there is that of the steady motion and of mode 1, as the rows until the first impact show it.
     """
     record = linear.record
+    if record.order:
+        raise NoAnswer("a motion that does not repeat is fitted to a displacement alone: record that")
     times, x, found = *record.rows.T, list[tuple[Displacement, ImpactOscillator]]()
     part, period = close_return(times, x, linear.frequency)
     at = with_values(oscillator, {"frequency": linear.frequency})
-    motions = kicked_motions(times, x, oscillator, record.frequency)
-    motions += Search(times[part], x[part], at, period).found()
-    likely = [one for one in motions if one.reading()["gap"] > 0.0 and one.steady != 0.0]
+    motions = kicked_motions(record, oscillator)
+    motions += Search(replace(record, rows=record.rows[part]), at, period).found()
+    likely = [one for one in motions if one.reading()["gap"] > 0.0 and one.base != 0.0]
     pairs = [pair for one in likely[:TRIED] for pair in starts_at(record, one, oscillator, names, free, True)]
     for steady, at in pairs:
         sensor, w = steady.reading(steady.extra), at.driven.angular_frequency

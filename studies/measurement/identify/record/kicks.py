@@ -7,11 +7,13 @@ orbit of m drive periods P = m/f, move the tip by
     Y_k  = sum_j I_j exp(-i k w t_j) G(k w)   for all k but 0 and m,
     G(v) = (1/P) sum_n phi_n^2/(omega_n^2 - v^2 + i c_n v),
 
-I_j the impulse of the kick at time t_j.  Y_0 has the offset of the sensor besides, Y_m the drive.  The Y_k
-follow from the rows by linear least squares.  The kicks are found one after the other, each where it explains
-most of what is left of the Y_k (matching pursuit: Mallat and Zhang, IEEE Trans. Signal Process. 41 (1993)
-3397).  All are then fitted together with the free period and the decay rate.  No row is differentiated: noise
-is averaged over the whole record.  A contact that lasts a while counts as a kick in its middle.
+I_j the impulse of the kick at time t_j.  Y_0 has the offset of the sensor besides, Y_m the drive.  A velocity
+has i k w Y_k.  An acceleration off the stop has the same sum with -(omega_n^2 + i c_n v) phi_n^2 in place of
+phi_n^2.  The Y_k follow from the rows by linear least squares.  The kicks are found one after the other, each
+where it explains most of what is left of the Y_k (matching pursuit: Mallat and Zhang, IEEE Trans. Signal
+Process. 41 (1993) 3397).  All are then fitted together with the free period and the decay rate.  No row is
+differentiated: noise is averaged over the whole record.  A contact that lasts a while counts as a kick in its
+middle.
 """
 
 import math
@@ -22,7 +24,9 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from contact import ImpactOscillator
-from studies.measurement.identify.record.spectrum import Array, Complex, count_of, drives, harmonics
+from studies.measurement.identify.record.channel import response
+from studies.measurement.identify.record.records import Array, Record
+from studies.measurement.identify.record.spectrum import Complex, count_of, drives, harmonics
 from studies.physics.parameters import parameters_of, with_values
 
 MOST_KICKS = 6  # of an orbit
@@ -39,15 +43,15 @@ class Kicked:
     """A kicked motion: the `oscillator` with its free period, decay rate and drive frequency as fitted.
 
     It repeats after `period` drive periods.  The `kicks` are at these times [s] and have these `impulses`
-    [N s].  The drive moves the tip by `steady` exp(2 pi i f t) and its conjugate [m]; `offset` is that of the
-    sensor [m].  `cost` is chi^2 of the harmonics and a charge for each kick, `without` that without kicks.
+    [N s].  The base is at the real part of `base` exp(2 pi i f t) [m]; `offset` is that of the sensor, in
+    the unit of the record.  `cost` is chi^2 of the harmonics and a charge for each kick, `without` that without kicks.
     """
 
     oscillator: ImpactOscillator
     m: int
     kicks: Array
     impulses: Array
-    steady: complex
+    base: complex
     offset: float
     cost: float
     without: float
@@ -58,7 +62,7 @@ class Kicked:
         `before` is the side of a kick that a time at it means.
         """
         one, w = self.oscillator, self.oscillator.driven.angular_frequency
-        share = one.steady_response() / one.tip_response() * 2.0 * self.steady * np.exp(1j * w * time)
+        share = one.steady_response() * self.base * np.exp(1j * w * time)
         lasting = self.m * one.period
         ages = (time - self.kicks) % lasting
         ages = np.where(before & (ages < 1e-9 * lasting), lasting, ages)
@@ -84,7 +88,7 @@ class Kicked:
     def possible(self) -> bool:
         """Whether a stop can do this: the strongest kick at a peak above equilibrium, and not from behind."""
         read = self.reading()
-        return read["gap"] > 0.0 and 0.0 < read["restitution"] < 1.0 and self.steady != 0.0
+        return read["gap"] > 0.0 and 0.0 < read["restitution"] < 1.0 and self.base != 0.0
 
 
 def poles(oscillator: ImpactOscillator) -> Complex:
@@ -97,7 +101,8 @@ def poles(oscillator: ImpactOscillator) -> Complex:
 class Search:
     """The kicks of a record of `oscillator` at its drive frequency, given that it repeats after `period`."""
 
-    def __init__(self, times: Array, values: Array, oscillator: ImpactOscillator, m: int) -> None:
+    def __init__(self, record: Record, oscillator: ImpactOscillator, m: int) -> None:
+        (times, values), self.record = record.rows.T, record
         known, self.leading = parameters_of(oscillator), oscillator.model.leading_mode
         self.given = known["free_period"].value, max(known["decay_rate"].value, 1e-3 / oscillator.period)
         self.oscillator, self.m = with_values(oscillator, {"decay_rate": self.given[1]}), m
@@ -113,7 +118,9 @@ class Search:
         model, w, (period, rate) = self.oscillator.model, self.w[:, None], np.exp(logs).tolist()
         omega = model.omega * (math.hypot(2.0 * math.pi / period, 0.5 * rate) / model.omega[self.leading])
         rates = model.decay_rate * (rate / model.decay_rate[self.leading])
-        return np.asarray((model.phi**2 / (omega**2 - w**2 + 1j * rates * w)).sum(axis=1) * self.base)
+        own = 1.0, 1j * w, -(omega**2) - 1j * rates * w
+        shares = own[self.record.order] * model.phi**2 / (omega**2 - w**2 + 1j * rates * w)
+        return np.asarray(shares.sum(axis=1) * self.base)
 
     def waves(self, response: Complex, kicks: Array) -> Complex:
         """The harmonics of unit kicks, shape (harmonics, kicks)."""
@@ -212,23 +219,21 @@ class Search:
         waves, (period, rate) = self.waves(self.response(logs), kicks), np.exp(logs).tolist()
         impulses = self.impulses(waves)
         rest = self.seen - waves @ impulses
-        steady, offset = complex(rest[self.m]), float(rest[0].real)
         without = float(np.sum(np.abs(self.seen[self.used]) ** 2)) / self.error**2
         at = with_values(self.oscillator, {"free_period": period, "decay_rate": rate})
+        base, offset = complex(2.0 * rest[self.m] / response(at, self.record)), float(rest[0].real)
         kicks = kicks % (1.0 / self.base)
-        return Kicked(at, self.m, kicks, impulses, steady, offset, cost, without)
+        return Kicked(at, self.m, kicks, impulses, base, offset, cost, without)
 
 
-def kicked_motions(
-    times: Array, values: Array, oscillator: ImpactOscillator, given: float | None
-) -> list[Kicked]:
-    """Kicked motions that a record may be, the best first, from the drive frequency that is `given` [Hz].
+def kicked_motions(record: Record, oscillator: ImpactOscillator) -> list[Kicked]:
+    """Kicked motions that a record may be, the best first, from its drive frequency where that is known.
 
     The modes of `oscillator` beyond the first keep their ratios to it.  Without a frequency each harmonic of
     the orbit is tried as that of the drive.
     """
     found = list[Kicked]()
-    for frequency, period in drives(times, values, given):
+    for frequency, period in drives(*record.rows.T, record.frequency):
         at = with_values(oscillator, {"frequency": frequency})
-        found += Search(times, values, at, period).found()
+        found += Search(record, at, period).found()
     return sorted(found, key=lambda one: one.cost)

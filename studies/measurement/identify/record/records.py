@@ -33,6 +33,8 @@ HEADINGS: dict[tuple[str, ...], Kind] = {
     ("frequency_hz", "period", "excess"): "transitions",
     ("frequency_hz", "period", "excess", "error"): "transitions",
 }
+CHANNELS = {"x_m": "m", "v_m_per_s": "m/s", "a_m_per_s2": "m/s²"}
+"""What a motion may be recorded as: displacement, velocity or acceleration, with its SI unit."""
 NOTES = ("frequency_hz", "amplitude_m")
 FEWEST = {"strobe": 4, "motion": 40, "transitions": 1}  # rows that each kind needs
 LARGEST, LATEST = 1e6, 1e15  # largest size of a number, in the unit of its column, and of a time [s]
@@ -56,7 +58,7 @@ class Record:
     """A record: its `columns`, `rows` of shape (n_rows, n_columns), and the drive where it is known.
 
     `frequency` [Hz] and `amplitude` [m] are None where the record has no such line; `origin` [s] is what was
-    subtracted from its times; `notes` say what was changed of it for a fit.
+    subtracted from its times; a sensor on the `ground` reads the motion of the base as well; `notes` say what was changed of it for a fit.
     """
 
     columns: tuple[str, ...]
@@ -64,7 +66,18 @@ class Record:
     frequency: float | None = None
     amplitude: float | None = None
     origin: float = 0.0
+    ground: bool = False
     notes: tuple[str, ...] = ()
+
+    @property
+    def order(self) -> int:
+        """Which derivative of the displacement in time a motion has: 0, 1 or 2."""
+        return [*CHANNELS].index(self.columns[-1]) if self.kind == "motion" else 0
+
+    @property
+    def unit(self) -> str:
+        """The SI unit of what is observed: m, m/s, m/s² or, of an excess, 1."""
+        return "1" if self.kind == "transitions" else CHANNELS[self.columns[-1]] if self.kind == "motion" else "m"
 
     @property
     def kind(self) -> Kind:

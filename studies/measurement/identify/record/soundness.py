@@ -16,6 +16,7 @@ from contact import ImpactOscillator
 from studies.measurement.identify.record.records import Array, NoAnswer, Record
 from studies.measurement.identify.record.spectrum import NEAR, peaks, scatter
 from studies.physics.parameters import parameters_of, with_values
+from studies.shell.digits import in_unit
 
 STRONG = 0.3  # height of the drive's line over the strongest; settled motions: above 0.7
 RESOLVED, UNRESOLVED = 0.05, 0.3  # parts of 1/span by which other lines move one: of three orbits, of fewer
@@ -73,11 +74,11 @@ def off_neighbours(times: Array, values: Array) -> tuple[Array, float]:
     return np.where(before * after > 0.0, np.minimum(np.abs(before), np.abs(after)), 0.0) / noise, noise
 
 
-def poor_rows(times: Array, values: Array, off: Array, frequency: float) -> list[str]:
+def poor_rows(times: Array, values: Array, off: Array, frequency: float, unit: str = "m") -> list[str]:
     """Saturation, by extreme readings, and outliers: rows `off` at more than one phase, unlike impacts."""
     readings, counts = np.unique(values, return_counts=True)
     stuck = [end for end, step in ((0, 1), (-1, -1)) if counts[end] > STICKING * (counts[end + step] + 0.5)]
-    where = [f"{1e3 * readings[end]:.4g} mm in {counts[end]} of {values.size} rows" for end in stuck]
+    where = [f"{in_unit(readings[end], unit)} in {counts[end]} of {values.size} rows" for end in stuck]
     found = [f"readings stick at {one}: the sensor or the recorder saturates" for one in where]
     rows, phase = np.flatnonzero(off > STRAY), np.exp(2j * math.pi * frequency * times[off > 0.5 * STRAY])
     if 0 < rows.size < 3 or (rows.size and abs(phase.mean()) < 0.8):
@@ -86,7 +87,7 @@ def poor_rows(times: Array, values: Array, off: Array, frequency: float) -> list
     return found
 
 
-def defects(times: Array, values: Array, frequency: float | None) -> list[str]:
+def defects(times: Array, values: Array, frequency: float | None, unit: str = "m") -> list[str]:
     """What the record alone shows, with the drive `frequency` [Hz] if it is given; empty if it is sound."""
     if np.ptp(values) == 0.0:
         return ["the record is constant"]
@@ -103,7 +104,7 @@ def defects(times: Array, values: Array, frequency: float | None) -> list[str]:
         f"the record is a free decay: no line of it lasts, it falls to 1/{fall:.2g}": decays,
     }
     found = [sentence for sentence, true in sentences.items() if true]
-    return found + poor_rows(times, values, off_neighbours(times, values)[0], line)
+    return found + poor_rows(times, values, off_neighbours(times, values)[0], line, unit)
 
 
 def sound(record: Record, oscillator: ImpactOscillator) -> tuple[Record, ImpactOscillator]:
@@ -112,7 +113,7 @@ def sound(record: Record, oscillator: ImpactOscillator) -> tuple[Record, ImpactO
     NoAnswer is raised for defects, InvalidValue for a drive of another record; `notes` say what was changed.
     """
     (times, x), given = record.rows.T, record.frequency
-    if faults := defects(times, x, given):
+    if faults := defects(times, x, given, record.unit):
         raise NoAnswer(f"the record has no answer: {'; '.join(faults)}")
     if given and (other := drive_found(times, x, given)):
         if abs(given / other[0] - 1.0) > OFF:
