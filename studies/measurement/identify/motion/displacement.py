@@ -136,13 +136,13 @@ class Displacement(Prediction):
         found.record, found.times, found._last = record, record.rows[:, 0], None
         return found
 
-    def cleared(self, oscillator: ImpactOscillator, extra: Array) -> Self | None:
-        """The prediction of all rows but those next to its impacts, if these are others than before."""
+    def cleared(self, oscillator: ImpactOscillator, extra: Array, width: float = 0.0) -> Self | None:
+        """The prediction of all rows but ones next to its impacts [s], if these are others than before."""
         if not self.m:
             return None
         hits, w = self.run(oscillator, extra)[0].impacts, oscillator.driven.angular_frequency
         away = self.reading(extra)["phase"] / w
-        record = clear_of(self.whole, hits.start - away, hits.end - away, self.m * oscillator.period, 0.0)
+        record = clear_of(self.whole, hits.start - away, hits.end - away, self.m * oscillator.period, width)
         return None if np.array_equal(record.rows, self.record.rows) else self._of(record)
 
     def reading(self, extra: Array) -> dict[str, float]:

@@ -52,8 +52,8 @@ class Prediction(ABC):
         """A copy, whose searches leave this one where it is."""
         return copy.copy(self)
 
-    def cleared(self, oscillator: ImpactOscillator, extra: Array) -> Self | None:
-        """Another choice of rows by where the impacts are; None if there is no better one."""
+    def cleared(self, oscillator: ImpactOscillator, extra: Array, width: float = 0.0) -> Self | None:
+        """Another choice of rows, so far from impacts [s]; None if there is no better one."""
         return None
 
     @abstractmethod

@@ -198,7 +198,10 @@ def starts_at(
     pairs = list[tuple[Displacement, ImpactOscillator]]()
     for one in [*(_behind(one, start, lowest, lasting) for one in tried), *given]:
         prediction = Displacement(clear, one, start, sensor, free, whole=record, m=motion.m, clock=lowest)
-        pairs.append((prediction, _closing(prediction, one, moved)))
+        closed = _closing(prediction, one, moved)
+        with suppress(ContactError, Refusal):
+            prediction = prediction.cleared(closed, prediction.extra, WIDE * at.period) or prediction
+        pairs.append((prediction, closed))
     return pairs
 
 

@@ -101,11 +101,12 @@ def poles(oscillator: ImpactOscillator) -> Complex:
 class Search:
     """The kicks of a record of `oscillator` at its drive frequency, given that it repeats after `period`."""
 
-    def __init__(self, record: Record, oscillator: ImpactOscillator, m: int) -> None:
+    def __init__(self, record: Record, oscillator: ImpactOscillator, m: int, pulses: bool = False) -> None:
         (times, values), self.record = record.rows.T, record
         known, self.leading = parameters_of(oscillator), oscillator.model.leading_mode
         self.given = known["free_period"].value, max(known["decay_rate"].value, 1e-3 / oscillator.period)
         self.oscillator, self.m = with_values(oscillator, {"decay_rate": self.given[1]}), m
+        self.pulses = pulses
         self.base = oscillator.driven.frequency / m
         count = count_of(times, self.base)
         self.seen, noise = harmonics(times, values, self.base, count)
@@ -118,7 +119,7 @@ class Search:
         model, w, (period, rate) = self.oscillator.model, self.w[:, None], np.exp(logs).tolist()
         omega = model.omega * (math.hypot(2.0 * math.pi / period, 0.5 * rate) / model.omega[self.leading])
         rates = model.decay_rate * (rate / model.decay_rate[self.leading])
-        own = 1.0, 1j * w, -(omega**2) - 1j * rates * w
+        own = 1.0, 1j * w, -(w**2) + 0j * omega if self.pulses else -(omega**2) - 1j * rates * w
         shares = own[self.record.order] * model.phi**2 / (omega**2 - w**2 + 1j * rates * w)
         return np.asarray(shares.sum(axis=1) * self.base)
 
@@ -233,7 +234,8 @@ def kicked_motions(record: Record, oscillator: ImpactOscillator) -> list[Kicked]
     the orbit is tried as that of the drive.
     """
     found = list[Kicked]()
-    for frequency, period in drives(*record.rows.T, record.frequency):
+    for frequency, period in drives(record):
         at = with_values(oscillator, {"frequency": frequency})
-        found += Search(record, at, period).found()
+        for pulses in (False, True) if record.order == 2 else (False,):
+            found += Search(record, at, period, pulses).found()
     return sorted(found, key=lambda one: one.cost)

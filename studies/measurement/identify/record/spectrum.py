@@ -7,12 +7,12 @@ from numpy.typing import NDArray
 from scipy.fft import next_fast_len, rfft
 from scipy.signal import detrend, find_peaks
 
-from studies.measurement.identify.record.records import Array
+from studies.measurement.identify.record.records import Array, Record
 
 Complex = NDArray[np.complex128]
 
 MOST_HARMONICS, LONGEST = 90, 12  # harmonics of an orbit and its drive periods at most
-SAME = 1.3  # an orbit leaves at most so much of the least scatter
+SAME, JUMPS = 1.3, 2.0  # an orbit leaves at most so much of the least scatter; of a velocity, which jumps
 NEAR = 3e-3  # part by which a given drive frequency may be off
 LINES, DRIVES = 6, 4  # lines of the spectrum that give an orbit; harmonics of it that may be the drive
 HIGH = 0.05  # least part of the highest harmonic that one of the drive has
@@ -66,15 +66,16 @@ def scatter(times: Array, values: Array, frequency: float) -> Array:
     return np.array([orbit_of(times, values, frequency / m)[1] for m in range(1, most + 1)])
 
 
-def repetition(times: Array, values: Array, frequency: float) -> int:
+def repetition(times: Array, values: Array, frequency: float, same: float = SAME) -> int:
     """Drive periods after which a record repeats, or nearly so."""
     left = scatter(times, values, frequency)
-    return int(np.argmax(left < SAME * left.min())) + 1
+    return int(np.argmax(left < same * left.min())) + 1
 
 
-def drives(times: Array, values: Array, given: float | None) -> list[tuple[float, int]]:
-    """Drive frequencies [Hz] that a record may have, each with its period m; several if none is `given`."""
-    lines = peaks(times, values)[0]
+def drives(record: Record) -> list[tuple[float, int]]:
+    """Drive frequencies [Hz] that a motion may have, each with its period m; several if none is known."""
+    (times, values), same = record.rows.T, JUMPS if record.order == 1 else SAME
+    lines, given = peaks(times, values)[0], record.frequency
 
     def nearest(frequency: float) -> float:
         return float(lines[np.argmin(np.abs(lines - frequency))])
@@ -82,10 +83,10 @@ def drives(times: Array, values: Array, given: float | None) -> list[tuple[float
     if given is not None:
         near = nearest(given)
         found = near if abs(near / given - 1.0) < NEAR else given
-        return [(found, repetition(times, values, found))]
+        return [(found, repetition(times, values, found, same))]
     tried = [one / m for one in lines[:LINES].tolist() for m in range(1, LONGEST // 2 + 1)]
     left = np.array([orbit_of(times, values, base)[1] for base in tried])
-    base = max(one for one, size in zip(tried, left, strict=True) if size < SAME * left.min())
+    base = max(one for one, size in zip(tried, left, strict=True) if size < same * left.min())
     heights = np.abs(harmonics(times, values, base, min(LONGEST, count_of(times, base)))[0][1:])
     likely = [int(m) + 1 for m in np.argsort(-heights)[:DRIVES] if heights[m] > HIGH * heights.max()]
     return [(nearest(m * base), m) for m in likely]
