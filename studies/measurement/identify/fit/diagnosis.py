@@ -35,7 +35,8 @@ def added(times: Array, residuals: Array, base: float, part: float = 0.0, unit: 
     tone, apart = np.mean(tones), abs(at - base * max(1, round(at / base))) * span
     lasts = apart > 1.0 and max(np.abs(tones - tone)) < 0.5 * abs(tone)
     if lasts and abs(tone) / math.sqrt(2.0) > max(SURE / math.sqrt(rows), part) * rest.std():
-        found = [f"a line at {at:.4g} Hz of {in_unit(abs(tone), unit, 2)} that is no harmonic of the orbit: hum"]
+        size = in_unit(abs(tone), unit, 2)
+        found = [f"a line at {at:.4g} Hz of {size} that is no harmonic of the orbit: hum"]
     slopes = [np.polyfit(t[third], (rest + slope * t)[third], 1)[0] / slope for third in thirds]
     if abs(slope) * math.sqrt(rows / 12) > SURE * rest.std() and min(slopes) > 0.5:
         found.append(f"a drift of {in_unit(slope / span, unit, 2)}/s")

@@ -35,8 +35,8 @@ from numpy.typing import NDArray
 from beam import InvalidValue
 from contact import ImpactKind, ImpactOscillator, State, Trajectory, simulate
 from contact.orbits import motion_derivatives
-from studies.measurement.identify.record.channel import clear_of, rates, readings, readings_changed
 from studies.measurement.identify.motion.predictions import Prediction
+from studies.measurement.identify.record.channel import clear_of, rates, readings, readings_changed
 from studies.measurement.identify.record.records import Array, NoAnswer, Record
 from studies.physics.parameters import changes_of, parameters_of
 
@@ -99,12 +99,15 @@ class Displacement(Prediction):
         first: int = 0,
     ) -> None:
         model, gap = oscillator.model, oscillator.stop.gap
-        self.whole, self.record, self.times = whole or record, record, record.rows[:, 0]
+        self.whole, self.record = whole or record, record
+        self.strobed, count = record.kind == "strobe", np.arange(len(record.rows), dtype=float)
+        self.times = count if self.strobed else record.rows[:, 0]  # of strobes in drive periods
         self.m, self.clock, self.first = m, clock, first
         tip = gap / np.abs(model.phi)
         self.scale = np.append(tip, tip * model.omega)
         self.orbit = Orbit(state=np.ravel(start))
-        sizes = {"phase": 1.0, "offset": gap * oscillator.driven.angular_frequency**record.order, "scale": 1.0}
+        reading = gap * oscillator.driven.angular_frequency**record.order
+        sizes = {"phase": 1.0, "offset": reading, "scale": 1.0}
         own = np.empty(0) if m else self.scale
         others = np.tile(np.arange(model.n_modes) != model.leading_mode, 2)[: own.size]
         self.sensor, self.fixed = tuple(free), dict(sensor)
@@ -129,21 +132,21 @@ class Displacement(Prediction):
 
     def part(self, rows: slice) -> Self:
         """The prediction of some rows."""
-        return self._of(replace(self.record, rows=self.record.rows[rows]))
+        return self._of(replace(self.record, rows=self.record.rows[rows]), self.times[rows])
 
-    def _of(self, record: Record) -> Self:
+    def _of(self, record: Record, times: Array) -> Self:
         found = copy.copy(self)
-        found.record, found.times, found._last = record, record.rows[:, 0], None
+        found.record, found.times, found._last = record, times, None
         return found
 
     def cleared(self, oscillator: ImpactOscillator, extra: Array, width: float = 0.0) -> Self | None:
         """The prediction of all rows but ones next to its impacts [s], if these are others than before."""
-        if not self.m:
+        if not (self.m and self.record.order):
             return None
         hits, w = self.run(oscillator, extra)[0].impacts, oscillator.driven.angular_frequency
         away = self.reading(extra)["phase"] / w
         record = clear_of(self.whole, hits.start - away, hits.end - away, self.m * oscillator.period, width)
-        return None if np.array_equal(record.rows, self.record.rows) else self._of(record)
+        return None if np.array_equal(record.rows, self.record.rows) else self._of(record, record.rows[:, 0])
 
     def reading(self, extra: Array) -> dict[str, float]:
         """The numbers of the sensor."""
@@ -155,7 +158,8 @@ class Displacement(Prediction):
         w, phase = oscillator.driven.angular_frequency, self.reading(extra)["phase"]
         if self.m:
             begun, lasting = self.clock, self.m * oscillator.period
-            times = begun + (self.times + phase / w - begun) % lasting
+            stamps = self.times * (oscillator.period if self.strobed else 1.0)
+            times = begun + (stamps + phase / w - begun) % lasting
             return self._closed(oscillator), times, begun + lasting
         begun = ((phase + w * self.times[0]) % (2.0 * math.pi)) / w
         q, v = extra[: 2 * oscillator.n_modes].reshape(2, -1)
@@ -203,8 +207,8 @@ class Displacement(Prediction):
         """The readings."""
         (run, place), sensor = self.run(oscillator, extra), self.reading(extra)
         q, v, times = (one[place[:-1]] for one in (run.displacement, run.velocity, run.time))
-        read = readings(self.record, oscillator, times, rates(oscillator, times, q, v))[0]
-        return (sensor["offset"] + sensor["scale"] * read)[:, None]
+        read = readings(self.record, oscillator, times, rates(oscillator, times, q, v))[:-1]
+        return np.asarray(sensor["offset"] + sensor["scale"] * read.T)
 
     def jacobian(self, oscillator: ImpactOscillator, extra: Array, names: Sequence[str]) -> Array:
         """Derivatives of `values`."""
@@ -215,30 +219,36 @@ class Displacement(Prediction):
         found = motion_derivatives(oscillator, state, changes, periods=periods, times=times)
         run, scale = found.trajectory, self.reading(extra)["scale"]
         at, q, v = (one[place[:-1]] for one in (times, run.displacement, run.velocity))
-        motion = rates(oscillator, at, q, v)
-        x, later = readings(self.record, oscillator, at, motion)
-        tip = readings_changed(self.record, oscillator, changes, at, motion, found.states[place[:-1]])
-        own, tips = tip[:, 2 * n :], tip[:, : 2 * n]
-        moved = [name == "frequency" for name in names]
-        q, v = state.displacement[None], state.velocity[None]
-        rate = np.ravel(rates(oscillator, np.array([state.time]), q, v)[1:3])
+        motion, rate = rates(oscillator, at, q, v), _rate(oscillator, state)
+        read, moved = readings(self.record, oscillator, at, motion), [name == "frequency" for name in names]
+        parts = readings_changed(self.record, oscillator, changes, at, motion, found.states[place[:-1]])
         if self.m:
-            own = own + np.outer((self.times - rows) / f * later, moved)
-            last = found.states[place[-1]]
+            last, orbit = found.states[place[-1]], self.orbit
             ends = last[:, 2 * n :] - np.outer(rate * self.m * oscillator.period / f, moved)
-            orbit = self.orbit
             orbit.inverse = np.linalg.inv(np.eye(2 * n) - last[:, : 2 * n])
             orbit.state, orbit.follow = np.append(state.displacement, state.velocity), orbit.inverse @ ends
             orbit.names, orbit.values = tuple(names), _values(oscillator, names)
-            own, tips = own + tips @ orbit.follow, tips[:, :0]
-        else:
-            later = later - tips @ rate
-            own = own + np.outer((self.times[0] - state.time) / f * later, moved)
-        columns = {"phase": later / w * scale, "offset": np.ones(x.size), "scale": x}
-        more = np.array([columns[name] for name in self.sensor]).reshape(-1, x.size).T
-        return np.hstack([scale * own, scale * tips, more])
+        rowwise = list[Array]()
+        for x, later, (tips, own) in zip(read[:-1], read[1:], parts, strict=True):
+            if self.m:
+                stamps = 0.0 if self.strobed else self.times
+                own = own + tips @ orbit.follow + np.outer((stamps - rows) / f * later, moved)
+                tips = tips[:, :0]
+            else:
+                later = later - tips @ rate
+                own = own + np.outer((self.times[0] - state.time) / f * later, moved)
+            columns = {"phase": later / w * scale, "offset": np.ones(x.size), "scale": x}
+            more = np.array([columns[name] for name in self.sensor]).reshape(-1, x.size).T
+            rowwise.append(np.hstack([scale * own, scale * tips, more]))
+        return np.stack(rowwise, axis=1).reshape(-1, rowwise[0].shape[1])
 
 
 def _periods(end: float, oscillator: ImpactOscillator) -> int:
     """Whole drive periods up to a time."""
     return math.ceil(end / oscillator.period + 1e-9)
+
+
+def _rate(oscillator: ImpactOscillator, state: State) -> Array:
+    """Modal velocities and accelerations off the stop."""
+    q, v = state.displacement[None], state.velocity[None]
+    return np.ravel(rates(oscillator, np.array([state.time]), q, v)[1:3])

@@ -70,7 +70,8 @@ class Linear:
     def require_decay(self, rate: float) -> None:
         """NoAnswer if a free mode with this decay rate [1/s] hardly decays."""
         if self.decays and rate * (self.times[-1] - self.times[0]) < LASTS:
-            tone = f"a line at {1.0 / self.free_period:.4g} Hz of {in_unit(abs(self.free), self.record.unit, 3)}"
+            size = in_unit(abs(self.free), self.record.unit, 3)
+            tone = f"a line at {1.0 / self.free_period:.4g} Hz of {size}"
             raise NoAnswer(f"{tone} does not decay: hum, or a free mode that needs a longer record")
 
     def start(

@@ -14,17 +14,8 @@ from typing import Self
 import numpy as np
 
 from beam import InvalidValue
-from contact import ContactLaw, ImpactOscillator, MaximalFamily, NewtonRestitution, simulate
-from contact.orbits import (
-    Change,
-    KickFamily,
-    PeriodicOrbit,
-    Shooting,
-    SingleImpactOrbit,
-    excess_derivatives,
-    fold_of,
-    orbit_derivatives,
-)
+from contact import ContactLaw, ImpactOscillator, MaximalFamily, NewtonRestitution
+from contact.orbits import KickFamily, PeriodicOrbit, Shooting, excess_derivatives, fold_of
 from studies.measurement.identify.record.records import Array, Record
 from studies.physics.parameters import changes_of
 
@@ -74,58 +65,6 @@ def family_of(oscillator: ImpactOscillator, m: int) -> MaximalFamily | KickFamil
     """The orbits p_m by linear algebra: exact under Newton's law, close under any other."""
     family = MaximalFamily if in_closed_form(oscillator.stop.law) else KickFamily
     return family(oscillator=oscillator, m=m)
-
-
-def shapes_changed(changes: Sequence[Change], count: int) -> Array:
-    """Derivatives of the tip values phi by each change, shape (count, changes)."""
-    still = np.zeros(count)
-    return np.array([still if one.model is None else one.model.phi for one in changes]).reshape(-1, count).T
-
-
-class Strobes(Prediction):
-    """The m strobe points of p_m."""
-
-    def __init__(self, record: Record, m: int, orbit: SingleImpactOrbit) -> None:
-        self.record, self.m = record, m
-        family = Shooting(oscillator=orbit.oscillator, m=m)
-        self.orbit: PeriodicOrbit = family.at_speed(orbit.speed)
-        self.at, rows = orbit.oscillator, record.observed
-        self.mean = np.array([rows[k::m].mean(axis=0) for k in range(m)])
-
-    def values(self, oscillator: ImpactOscillator, extra: Array) -> Array:
-        """The strobe points of the orbit next to the last one, a row for each of the record."""
-        if oscillator is not self.at:
-            family = Shooting(oscillator=oscillator, m=self.m)
-            orbit = family.at_excess(oscillator.excess, self.orbit)
-            if not orbit.admissible:
-                raise InvalidValue(f"p{self.m} has another impact with these parameters")
-            self.orbit, self.at = orbit, oscillator
-        return self.of_orbit()
-
-    def of_orbit(self) -> Array:
-        """The strobe points of the last orbit."""
-        oscillator = self.orbit.oscillator
-        run = simulate(oscillator, self.orbit.state(), periods=self.m)
-        rows = run.strobe_displacement, run.strobe_velocity
-        points = np.column_stack([oscillator.tip(row) for row in rows[: self.mean.shape[1]]])
-        return self._in_order(points, points[:, 0])
-
-    def _in_order(self, values: Array, x: Array) -> Array:
-        """`values` of the m strobes, shape (m, ...), as rows of the record, in the order in which x fits."""
-        places = (np.arange(self.m) - np.arange(self.m)[:, None]) % self.m
-        best = places[np.argmin(np.sum((x[places] - self.mean[:, 0]) ** 2, axis=1))]
-        return np.asarray(values[best[np.arange(len(self.record.rows)) % self.m]])
-
-    def jacobian(self, oscillator: ImpactOscillator, extra: Array, names: Sequence[str]) -> Array:
-        """Derivatives of `values`."""
-        points = self.values(oscillator, extra)
-        n, changes = oscillator.n_modes, changes_of(self.orbit.oscillator, names)
-        found = orbit_derivatives(self.orbit, changes)
-        states = found.strobes_changed.reshape(self.m, 2, n, len(names))
-        tips = np.tensordot(states, oscillator.model.phi, (2, 0))
-        tips += found.strobes.reshape(self.m, 2, n) @ shapes_changed(changes, n)
-        x = oscillator.tip(found.strobes[:, :n])
-        return self._in_order(tips[:, : points.shape[1]], x).reshape(points.size, -1)
 
 
 class Transitions(Prediction):

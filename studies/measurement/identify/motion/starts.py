@@ -18,8 +18,9 @@ from scipy.optimize import least_squares
 
 from beam import Refusal
 from contact import ContactError, ImpactOscillator, SingleImpactOrbit, State, simulate
+from contact.orbits import Shooting
 from studies.measurement.identify.motion.displacement import SENSOR, Displacement
-from studies.measurement.identify.motion.predictions import Prediction, Strobes, Transitions, family_of
+from studies.measurement.identify.motion.predictions import Prediction, Transitions, family_of
 from studies.measurement.identify.record.channel import clear_of
 from studies.measurement.identify.record.kicks import Kicked, kicked_motions
 from studies.measurement.identify.record.records import Array, NoAnswer, Record
@@ -77,18 +78,19 @@ def strobe_period(record: Record) -> int:
 
 def _strobes(
     record: Record, oscillator: ImpactOscillator, names: Sequence[str]
-) -> tuple[Strobes, ImpactOscillator]:
+) -> tuple[Displacement, ImpactOscillator]:
     period, size = strobe_period(record), float(record.observed[:, 0].std())
     if (count := period * record.observed.shape[1]) < len(names):
         raise NoAnswer(f"p{period} gives {count} numbers, too few for {len(names)} parameters")
 
-    def near(at: ImpactOscillator, most: float) -> Strobes | None:
+    def near(at: ImpactOscillator, most: float) -> Displacement | None:
         """The orbit at the drive of this oscillator, if it is off by less than this part of the record."""
         try:
             orbits = family_of(at, period).orbits(at.excess)
             if not orbits:
                 return None
-            found = Strobes(record, period, orbits[-1])
+            start = strobes_of(orbits[-1], record)[1]
+            found = Displacement(record, at, start, SENSOR, (), m=period)
             off = (found.values(at, found.extra) - record.observed)[:, 0]
         except (ContactError, Refusal):
             return None
@@ -103,6 +105,19 @@ def _strobes(
         advice = "give better values of what is not fitted, or fit more"
         raise NoAnswer(f"no p{period} with one impact was found near the record: {advice}")
     return found, begun
+
+
+def strobes_of(orbit: SingleImpactOrbit, record: Record) -> tuple[Array, Array]:
+    """The rows of the record by an orbit, in the cyclic order that fits best, and its state at the first."""
+    oscillator, m, rows = orbit.oscillator, orbit.m, record.observed
+    exact = Shooting(oscillator=oscillator, m=m).at_speed(orbit.speed)
+    run = simulate(oscillator, exact.state(), periods=m)
+    states = run.strobe_displacement, run.strobe_velocity
+    points = np.column_stack([oscillator.tip(one) for one in states[: rows.shape[1]]])
+    mean = np.array([rows[k::m, 0].mean() for k in range(m)])
+    places = (np.arange(m) - np.arange(m)[:, None]) % m
+    best = places[np.argmin(np.sum((points[places, 0] - mean) ** 2, axis=1))]
+    return points[best[np.arange(len(rows)) % m]], np.append(*(one[best[0]] for one in states))
 
 
 def _searched(
@@ -120,7 +135,7 @@ def _searched(
     def off(unknowns: Array) -> Array:
         try:
             at, orbit = orbit_at(unknowns)
-            rows = ((Strobes(record, m, orbit).of_orbit() - record.observed) / scale).ravel()
+            rows = ((strobes_of(orbit, record)[0] - record.observed) / scale).ravel()
         except (ContactError, Refusal):
             return np.full(scale.size + 1, np.nan)
         drive = orbit.amplitude / at.driven.amplitude - 1.0

@@ -48,10 +48,11 @@ def response(oscillator: ImpactOscillator, record: Record) -> complex:
 
 
 def readings(record: Record, oscillator: ImpactOscillator, times: Array, found: Sequence[Array]) -> Array:
-    """The readings, and how they change in time, from the `rates` there; shape (2, times)."""
-    height, orders = record.ground * oscillator.driven.amplitude, (record.order, record.order + 1)
-    own = [oscillator.tip(found[k]) + height * base_motion(oscillator, times, k) for k in orders]
-    return np.array(own)
+    """The readings of each column, and how the last changes in time, by the `rates` there; (columns + 1,
+    times)."""
+    height, first = record.ground * oscillator.driven.amplitude, record.order
+    orders = range(first, first + record.observed.shape[1] + 1)
+    return np.array([oscillator.tip(found[k]) + height * base_motion(oscillator, times, k) for k in orders])
 
 
 def readings_changed(
@@ -61,34 +62,37 @@ def readings_changed(
     times: Array,
     found: Sequence[Array],
     states: Array,
-) -> Array:
-    """Derivatives of the readings by the start and the changes, shape (times, 2 modes + changes).
+) -> list[Sequence[Array]]:
+    """Derivatives of the readings of each column by the start, shape (times, 2 modes), and by the changes.
 
     `states` are derivatives of the states, shape (times, 2 modes, 2 modes + changes).
     """
-    model, order, n = oscillator.model, record.order, oscillator.n_modes
-    numbers = ("omega", "decay_rate", "phi", "participation")
-    shapes = [[getattr(one.model, name, np.zeros(n)) for one in changes] for name in numbers]
+    model, n, drive = oscillator.model, oscillator.n_modes, oscillator.driven
+    names = ("omega", "decay_rate", "phi", "participation")
+    shapes = [[getattr(one.model, name, np.zeros(n)) for one in changes] for name in names]
     omega, rate, phi, gamma = (np.array(rows).reshape(-1, n).T for rows in shapes)
-    drive, w = oscillator.driven, oscillator.driven.angular_frequency
     faster = 2.0 * np.pi * drive.amplitude * np.array([one.frequency for one in changes])
     higher = np.array([one.amplitude for one in changes])
 
     def base(k: int) -> Array:
         """Of the derivative of order k of the base motion, by the changes."""
         sine, later = base_motion(oscillator, times, k), base_motion(oscillator, times, k + 1)
+        w = drive.angular_frequency
         return np.outer(sine, higher) + np.outer((k * sine + times * later) / w, faster)
 
-    q, v = (one[:, :, None] for one in found[:2])
     parts = [states[:, :n], states[:, n:]]
-    if order == 2:
+    if record.order == 2:
+        q, v = (one[:, :, None] for one in found[:2])
         parts.append(-model.decay_rate[:, None] * parts[1] - model.omega[:, None] ** 2 * parts[0])
         parts[2][:, :, 2 * n :] -= v * rate + q * (2.0 * model.omega[:, None] * omega)
         parts[2][:, :, 2 * n :] -= model.participation[:, None] * base(2)[:, None, :]
         parts[2][:, :, 2 * n :] -= drive.amplitude * base_motion(oscillator, times, 2)[:, None, None] * gamma
-    moved = np.tensordot(parts[order], model.phi, (1, 0))
-    moved[:, 2 * n :] += found[order] @ phi + record.ground * base(order)
-    return np.asarray(moved)
+    blocks = list[Sequence[Array]]()
+    for k in range(record.order, record.order + record.observed.shape[1]):
+        moved = np.tensordot(parts[k], model.phi, (1, 0))
+        own = moved[:, 2 * n :] + found[k] @ phi + record.ground * base(k)
+        blocks.append((moved[:, : 2 * n], own))
+    return blocks
 
 
 def clear_of(record: Record, begin: Array, end: Array, lasting: float, width: float) -> Record:

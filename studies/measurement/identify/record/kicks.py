@@ -43,8 +43,8 @@ class Kicked:
     """A kicked motion: the `oscillator` with its free period, decay rate and drive frequency as fitted.
 
     It repeats after `period` drive periods.  The `kicks` are at these times [s] and have these `impulses`
-    [N s].  The base is at the real part of `base` exp(2 pi i f t) [m]; `offset` is that of the sensor, in
-    the unit of the record.  `cost` is chi^2 of the harmonics and a charge for each kick, `without` that without kicks.
+    [N s].  The base is at the real part of `base` exp(2 pi i f t) [m]; `offset` is that of the sensor.
+    `cost` is chi^2 of the harmonics and a charge for each kick, `without` that without kicks.
     """
 
     oscillator: ImpactOscillator

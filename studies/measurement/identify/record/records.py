@@ -58,7 +58,8 @@ class Record:
     """A record: its `columns`, `rows` of shape (n_rows, n_columns), and the drive where it is known.
 
     `frequency` [Hz] and `amplitude` [m] are None where the record has no such line; `origin` [s] is what was
-    subtracted from its times; a sensor on the `ground` reads the motion of the base as well; `notes` say what was changed of it for a fit.
+    subtracted from its times; a sensor on the `ground` reads the motion of the base as well; `notes` say
+    what was changed of it for a fit.
     """
 
     columns: tuple[str, ...]
@@ -77,7 +78,7 @@ class Record:
     @property
     def unit(self) -> str:
         """The SI unit of what is observed: m, m/s, m/s² or, of an excess, 1."""
-        return "1" if self.kind == "transitions" else CHANNELS[self.columns[-1]] if self.kind == "motion" else "m"
+        return "1" if self.kind == "transitions" else CHANNELS.get(self.columns[-1], "m")
 
     @property
     def kind(self) -> Kind:
