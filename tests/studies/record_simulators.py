@@ -185,6 +185,21 @@ def settle(beam):
     raise Rejected("not periodic")
 
 
+def reading(record, order, on_ground):
+    """Velocity (order 1) or acceleration (2) of the tip at the rows of a record, without noise."""
+    beam, orbit = record.beam, record.period * record.beam.period
+    _, _, flights, events = follow(beam, record.state, record.touching, orbit)
+    times = record.time % orbit
+    base = on_ground * beam.amplitude * beam.drive**order * np.cos(beam.drive * times + 0.5 * np.pi * order)
+    if order == 1:
+        return base + tip(beam, flights, times)[1]
+    owner = np.searchsorted([start for start, _ in flights], times, side="right") - 1
+    hits = [sum(at <= start for at, _, _ in events) for start, _ in flights]
+    touching = [(record.touching + count) % 2 if beam.stiffness else 0 for count in hits]
+    rows = [(t, flights[k][1](np.array([t]))[:, 0], touching[k]) for t, k in zip(times, owner, strict=True)]
+    return base + [beam.phi @ beam.rate(*row)[len(beam.phi) :] for row in rows]
+
+
 def log_uniform(rng, low, high):
     return float(np.exp(rng.uniform(np.log(low), np.log(high))))
 

@@ -76,11 +76,21 @@ def test_what_was_put_in_comes_out_from_a_start_far_away(made, name, kind, veloc
     assert np.all((low < found.estimate) & (found.estimate < high))
 
 
-@pytest.mark.parametrize(("name", "kind", "velocity", "names"), CASES)
-def test_the_jacobian_is_that_of_differences(made, name, kind, velocity, names):
+MOVED = ("free_period", "decay_rate", "amplitude", "frequency", "gap")
+CHANNELS = [*((*case, "x_m") for case in CASES), ("one_mode", "motion", False, MOVED, "a_m_per_s2")]
+CHANNELS += [("beam", "motion", False, MOVED, column) for column in ("v_m_per_s", "a_m_per_s2")]
+
+
+@pytest.mark.parametrize(("name", "kind", "velocity", "names", "column"), CHANNELS)
+def test_the_jacobian_is_that_of_differences(made, name, kind, velocity, names, column):
+    """Also of velocities and accelerations by a sensor on the ground, off the stop."""
     oscillator = made[name]
     record = synthetic(kind, oscillator, velocity=velocity, periods=15 if kind == "motion" else 20)
     prediction, at = predictions_of(record, oscillator, names, SENSOR)[0]
+    if column != "x_m":
+        prediction.record = prediction.whole = replace(record, columns=("time_s", column), ground=True)
+        prediction = prediction.cleared(at, prediction.extra)
+        assert 0.9 * len(record.rows) < len(prediction.record.rows) < len(record.rows)
     exact, known, n = prediction.jacobian(at, prediction.extra, names), parameters_of(at), len(names)
     begun = np.append([known[name].value for name in names], prediction.extra)
 
@@ -88,7 +98,7 @@ def test_the_jacobian_is_that_of_differences(made, name, kind, velocity, names):
         there = with_values(at, dict(zip(names, values[:n].tolist(), strict=True)))
         return prediction.values(there, values[n:]).ravel()
 
-    steps = 1e-6 * np.append([known[name].size for name in names], prediction.sizes)
+    steps = np.append([1e-7 * known[name].size for name in names], 1e-5 * prediction.sizes)
     for k, step in enumerate(np.diag(steps)):
         column = (rows(begun + step) - rows(begun - step)) / (2.0 * steps[k])
         assert np.max(np.abs(exact[:, k] - column)) < (1e-4 if k < n else 1e-5) * np.max(np.abs(column))

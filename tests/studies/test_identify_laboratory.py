@@ -3,16 +3,17 @@
 import math
 import pickle
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from oscillators import slow
 from record_information import judged_by_information, truth_of
-from record_simulators import draw
+from record_simulators import draw, reading
 from record_trials import begun, trial_of
 
 from studies.measurement.identify.fit.search import fit
-from studies.measurement.identify.record.records import NoAnswer, Record
+from studies.measurement.identify.record.records import CHANNELS, NoAnswer, Record
 
 QUICK = {"equation_1": (24, 28, 9, 45), "two_modes": (5, 22)}
 """Records of p1 to p6 that determine all parameters and are soon fitted.  The drive is known for even seeds;
@@ -59,6 +60,26 @@ def test_phase_offset_sign_and_lost_rows_are_no_obstacle(kind: str, seed: int, k
     assert sensor["offset"] == pytest.approx(3e-3, abs=4.0 * found.errors[found.names.index("offset")])
     low, high = found.intervals().T
     assert np.all((low <= found.estimate) & (found.estimate <= high)) and np.all(low[: len(truth)] > 0.0)
+
+
+READ_AS = [("equation_1", 9, 1, True), ("two_modes", 22, 2, False)]
+MORE = [(kind, k, order, k % 2 == 0) for kind in QUICK for k in range(6) for order in (1, 2)]
+
+
+@pytest.mark.parametrize(("kind", "seed", "order", "ground"), [*READ_AS, *slow(*MORE)])
+def test_a_velocity_or_an_acceleration_is_compared_as_it_was_read(kind, seed, order, ground):
+    """By a sensor on the base or on the ground.  Rows next to impacts and in contact are left out."""
+    record = draw(kind, seed)
+    truth, (given, start) = truth_of(record.beam), begun(record, seed, True)
+    noise = record.noise_sd * record.beam.drive**order
+    y = reading(record, order, ground) + noise * np.random.default_rng(seed).standard_normal(record.time.size)
+    columns, rows = ("time_s", [*CHANNELS][order]), np.column_stack([record.time, y])
+    found = fit(replace(given, columns=columns, rows=rows, ground=ground), start, tuple(truth))
+    off = (found.estimate[: len(truth)] - np.array(list(truth.values()))) / found.errors[: len(truth)]
+    assert np.abs(off).max() < 4.0 and not found.too_small
+    assert found.noise == pytest.approx(noise, rel=0.1)
+    beside = record.time.size - found.record.rows.shape[0]
+    assert 0 < beside < 0.1 * record.time.size
 
 
 def test_no_answer_leaves_a_process_as_itself():
