@@ -215,7 +215,7 @@ def answered(one: Fit) -> Fit:
         (times, values), residuals = one.record.rows.T, one.residuals[:, 0]
         frequency, period = one.oscillator.driven.frequency, one.problem.prediction.m
         why = wanders(times, values, residuals, frequency)
-        why += contradictions(times, values, residuals, frequency, period, one.record.unit)
+        why += contradictions(times, values, residuals, frequency, period, one.record.order)
     reason = "; ".join([*dict.fromkeys(why)][:2])
     raise NoAnswer(f"{reason}; the best values found, of unknown error, are {without_errors(one)}")
 

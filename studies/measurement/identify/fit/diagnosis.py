@@ -12,7 +12,7 @@ from scipy.linalg import lstsq
 from scipy.optimize import minimize_scalar
 from scipy.signal import medfilt
 
-from studies.measurement.identify.record.records import Array
+from studies.measurement.identify.record.records import SI, Array
 from studies.measurement.identify.record.soundness import ALIKE, off_neighbours, poor_rows
 from studies.measurement.identify.record.spectrum import count_of, orbit_of, peaks, repetition, scatter
 from studies.shell.digits import in_unit
@@ -21,7 +21,7 @@ SURE = 8.0  # standard deviations of an estimate that is no chance
 MANY = 6000  # rows by which a filter is seen
 
 
-def added(times: Array, residuals: Array, base: float, part: float = 0.0, unit: str = "m") -> list[str]:
+def added(times: Array, residuals: Array, base: float, part: float = 0.0, order: int = 0) -> list[str]:
     """A hum and a drift that last, the same in each third of a record, beside what repeats with the orbit; a
     hum that has this `part` of the variance."""
     span, rows, found = float(times[-1] - times[0]), times.size, list[str]()
@@ -35,17 +35,17 @@ def added(times: Array, residuals: Array, base: float, part: float = 0.0, unit: 
     tone, apart = np.mean(tones), abs(at - base * max(1, round(at / base))) * span
     lasts = apart > 1.0 and max(np.abs(tones - tone)) < 0.5 * abs(tone)
     if lasts and abs(tone) / math.sqrt(2.0) > max(SURE / math.sqrt(rows), part) * rest.std():
-        size = in_unit(abs(tone), unit, 2)
+        size = in_unit(abs(tone), SI[order], 2)
         found = [f"a line at {at:.4g} Hz of {size} that is no harmonic of the orbit: hum"]
     slopes = [np.polyfit(t[third], (rest + slope * t)[third], 1)[0] / slope for third in thirds]
     if abs(slope) * math.sqrt(rows / 12) > SURE * rest.std() and min(slopes) > 0.5:
-        found.append(f"a drift of {in_unit(slope / span, unit, 2)}/s")
+        found.append(f"a drift of {in_unit(slope / span, SI[order], 2)}/s")
     return found
 
 
-def walked(times: Array, values: Array, frequency: float, m: int) -> list[str]:
+def walked(times: Array, values: Array, frequency: float, m: int, order: int) -> list[str]:
     """A drive that is off: the orbit of another frequency leaves less of the record."""
-    span, lines = times[-1] - times[0], peaks(times, values)[0]
+    span, lines = times[-1] - times[0], peaks(times, values, order)[0]
     near = lines[np.argmin(np.abs(lines - frequency))] + np.array([-0.1, 0.1]) / span
     best = minimize_scalar(lambda at: orbit_of(times, values, at / m)[1], bounds=near, method="bounded")
     if best.fun > 0.8 * orbit_of(times, values, frequency / m)[1]:
@@ -84,15 +84,15 @@ def wanders(times: Array, values: Array, residuals: Array, frequency: float) -> 
 
 
 def contradictions(
-    times: Array, values: Array, residuals: Array, frequency: float, m: int, unit: str = "m"
+    times: Array, values: Array, residuals: Array, frequency: float, m: int, order: int = 0
 ) -> list[str]:
     """What residuals show that are no noise; the drive is at `frequency` [Hz], a `period` 0 is unknown."""
     m = m or repetition(times, values, frequency)
     base, bare = frequency / m, np.abs(residuals - medfilt(residuals, 5))
     off = 3.0 * off_neighbours(times, values)[0]
     stray = np.minimum(bare / (1.4826 * np.median(bare[bare > 0.0])), off)
-    found = added(times, residuals, base, unit=unit) + poor_rows(times, values, stray, frequency, unit)
-    found += walked(times, values, frequency, m)
+    found = added(times, residuals, base, order=order) + poor_rows(times, values, stray, frequency, order)
+    found += walked(times, values, frequency, m, order)
     found = found or filtered(times, values, values - residuals, base)
     found = found or wanders(times, values, residuals, frequency)
     return found or ["the model is too small for the record"]

@@ -73,12 +73,12 @@ def _solved(
 ) -> Fit:
     """The best fit from these starts; it begins again where a profile finds a better one."""
     problem, found = best([Problem(one, at, names, unit) for one, at in starts], known)
-    for _ in range(AGAIN):
-        clear = problem.prediction.cleared(*problem.at(found.x))
-        if clear is None:
-            break
-        problem = Problem(clear, problem.oscillator, names, unit)
-        found = problem.solve(found.x)
+    with suppress(ContactError, Refusal):  # what has been found stays
+        for _ in range(AGAIN):
+            if (clear := problem.prediction.cleared(*problem.at(found.x))) is None:
+                break
+            other = Problem(clear, problem.oscillator, names, unit)
+            problem, found = other, other.solve(found.x)
     for _ in range(AGAIN):
         result = judged(problem, found, oscillator, known)
         walks, lowest = _walked(result)
@@ -115,7 +115,7 @@ def _displacement(
         if starts and isinstance(error, Undetermined):
             raise
         failure = error
-    times, x = record.rows.T
+    times, x = (found.record if found else record).rows.T
     residuals = found.residuals[:, 0] if found else x - x.mean()
     words = wanders(times, x, residuals, float(linear.frequency))
     early = int(np.searchsorted(times, times[0] + SHORT / float(linear.frequency)))
@@ -129,7 +129,7 @@ def _displacement(
                 return replace(other, record=replace(other.record, notes=(*record.notes, note)))
     if found is None:
         base = linear.frequency / repetition(times, x, linear.frequency)
-        hum = added(times, x, base, TONE, record.unit) if 2.0 < base * (times[-1] - times[0]) else []
+        hum = added(times, x, base, TONE, record.order) if 2.0 < base * (times[-1] - times[0]) else []
         reasons = [*hum, str(failure or "no motion like the record's was found")]
         raise NoAnswer("; ".join(reasons))
     return found

@@ -37,7 +37,7 @@ class Linear:
 
     def __init__(self, record: Record) -> None:
         (self.times, self.values), self.record = record.rows.T, record
-        line = record.frequency or float(peaks(self.times, self.values)[0][0])
+        line = record.frequency or float(peaks(self.times, self.values, record.order)[0][0])
         grid = [np.array([line, at / line, rate * line]) for at in FREE for rate in DECAYS]
         begun = min(grid, key=lambda one: float(np.sum(self.left(*one)[1] ** 2)))
 

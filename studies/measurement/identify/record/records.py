@@ -35,6 +35,7 @@ HEADINGS: dict[tuple[str, ...], Kind] = {
 }
 CHANNELS = {"x_m": "m", "v_m_per_s": "m/s", "a_m_per_s2": "m/s²"}
 """What a motion may be recorded as: displacement, velocity or acceleration, with its SI unit."""
+SI = [*CHANNELS.values()]
 NOTES = ("frequency_hz", "amplitude_m")
 FEWEST = {"strobe": 4, "motion": 40, "transitions": 1}  # rows that each kind needs
 LARGEST, LATEST = 1e6, 1e15  # largest size of a number, in the unit of its column, and of a time [s]

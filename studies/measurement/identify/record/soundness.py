@@ -3,6 +3,7 @@
 A motion that repeats after m periods of a drive of frequency f has lines at k f/m only. Impacts make corners:
 a row still agrees with the parabola through the three rows before it or after it. Times in s, readings in m,
 each of shape (rows,).
+The order is 0 for a displacement, 1 for a velocity, 2 for an acceleration.
 """
 
 import math
@@ -13,7 +14,7 @@ import numpy as np
 
 from beam import InvalidValue
 from contact import ImpactOscillator
-from studies.measurement.identify.record.records import Array, NoAnswer, Record
+from studies.measurement.identify.record.records import SI, Array, NoAnswer, Record
 from studies.measurement.identify.record.spectrum import NEAR, peaks, scatter
 from studies.physics.parameters import parameters_of, with_values
 from studies.shell.digits import in_unit
@@ -43,9 +44,9 @@ RATIOS = (
 """Units, their ratio, by which factor another may differ and still be one (10 is none), and of what."""
 
 
-def drive_found(times: Array, values: Array, frequency: float) -> tuple[float, str] | None:
+def drive_found(times: Array, values: Array, frequency: float, order: int = 0) -> tuple[float, str] | None:
     """The drive by the record [Hz] and a sentence, if the given `frequency` is not that of a strong line."""
-    lines, heights = peaks(times, values)
+    lines, heights = peaks(times, values, order)
     lines, span = lines[heights > STRONG], float(times[-1] - times[0])
     rate = (times.size - 1) / span
     seen = abs(frequency - rate * round(frequency / rate)) if frequency < 2.0 * rate else frequency
@@ -74,11 +75,11 @@ def off_neighbours(times: Array, values: Array) -> tuple[Array, float]:
     return np.where(before * after > 0.0, np.minimum(np.abs(before), np.abs(after)), 0.0) / noise, noise
 
 
-def poor_rows(times: Array, values: Array, off: Array, frequency: float, unit: str = "m") -> list[str]:
+def poor_rows(times: Array, values: Array, off: Array, frequency: float, order: int = 0) -> list[str]:
     """Saturation, by extreme readings, and outliers: rows `off` at more than one phase, unlike impacts."""
     readings, counts = np.unique(values, return_counts=True)
     stuck = [end for end, step in ((0, 1), (-1, -1)) if counts[end] > STICKING * (counts[end + step] + 0.5)]
-    where = [f"{in_unit(readings[end], unit)} in {counts[end]} of {values.size} rows" for end in stuck]
+    where = [f"{in_unit(readings[end], SI[order])} in {counts[end]} of {values.size} rows" for end in stuck]
     found = [f"readings stick at {one}: the sensor or the recorder saturates" for one in where]
     rows, phase = np.flatnonzero(off > STRAY), np.exp(2j * math.pi * frequency * times[off > 0.5 * STRAY])
     if 0 < rows.size < 3 or (rows.size and abs(phase.mean()) < 0.8):
@@ -87,12 +88,12 @@ def poor_rows(times: Array, values: Array, off: Array, frequency: float, unit: s
     return found
 
 
-def defects(times: Array, values: Array, frequency: float | None, unit: str = "m") -> list[str]:
+def defects(times: Array, values: Array, frequency: float | None, order: int = 0) -> list[str]:
     """What the record alone shows, with the drive `frequency` [Hz] if it is given; empty if it is sound."""
     if np.ptp(values) == 0.0:
         return ["the record is constant"]
-    rows, span, line = times.size, float(times[-1] - times[0]), float(peaks(times, values)[0][0])
-    other = drive_found(times, values, frequency) if frequency else None
+    rows, span, line = times.size, float(times[-1] - times[0]), float(peaks(times, values, order)[0][0])
+    other = drive_found(times, values, frequency, order) if frequency else None
     cycles = (other[0] if other else frequency or line) * span * rows / (rows - 1)
     sampled = f"{rows / cycles:.2g} rows a drive period: the sampling ({(rows - 1) / span:.3g} Hz)"
     size = np.array([part.std() for part in np.array_split(values, max(1, min(8, int(line * span))))])
@@ -104,7 +105,7 @@ def defects(times: Array, values: Array, frequency: float | None, unit: str = "m
         f"the record is a free decay: no line of it lasts, it falls to 1/{fall:.2g}": decays,
     }
     found = [sentence for sentence, true in sentences.items() if true]
-    return found + poor_rows(times, values, off_neighbours(times, values)[0], line, unit)
+    return found + poor_rows(times, values, off_neighbours(times, values)[0], line, order)
 
 
 def sound(record: Record, oscillator: ImpactOscillator) -> tuple[Record, ImpactOscillator]:
@@ -113,9 +114,9 @@ def sound(record: Record, oscillator: ImpactOscillator) -> tuple[Record, ImpactO
     NoAnswer is raised for defects, InvalidValue for a drive of another record; `notes` say what was changed.
     """
     (times, x), given = record.rows.T, record.frequency
-    if faults := defects(times, x, given, record.unit):
+    if faults := defects(times, x, given, record.order):
         raise NoAnswer(f"the record has no answer: {'; '.join(faults)}")
-    if given and (other := drive_found(times, x, given)):
+    if given and (other := drive_found(times, x, given, record.order)):
         if abs(given / other[0] - 1.0) > OFF:
             raise InvalidValue(other[1])
         record = replace(record, frequency=other[0], notes=(f"{other[1]}, where the fit begins",))

@@ -20,18 +20,22 @@ ENOUGH = 1500  # rows that show whether a record repeats
 ROUND = 1e-11  # relative addition to the diagonal of normal equations: unseen harmonics are small
 
 
-def peaks(times: Array, values: Array) -> tuple[Array, Array]:
-    """Frequencies [Hz] of the lines of a record, the strongest first, and their heights over its height."""
+def peaks(times: Array, values: Array, order: int = 0) -> tuple[Array, Array]:
+    """Frequencies [Hz] of the lines of a record, the strongest first, and their heights over its height, as a
+    displacement has them: the record is its derivative of this order."""
     rows, span = times.size, float(times[-1] - times[0])
     even = detrend(np.interp(np.linspace(times[0], times[-1], rows), times, values))
     size = next_fast_len(8 * rows, real=True)
     height = np.log(np.abs(rfft(even * np.hanning(rows), size)) + 1e-300)
     first = int(1.5 * size / rows)  # below it are the mean and a drift
     tops = find_peaks(height[first:])[0]
-    at = first + (tops[np.argsort(-height[first + tops])] if tops.size else np.zeros(1, int))
+    at = first + (tops if tops.size else np.zeros(1, int))
     low, middle, high = (height[at + way] for way in (-1, 0, 1))
     moved = 0.5 * (low - high) / np.minimum(low - 2.0 * middle + high, -1e-9)
-    return (at + np.clip(moved, -1.0, 1.0)) * (rows - 1) / (span * size), np.exp(middle - middle[0])
+    lines = (at + np.clip(moved, -1.0, 1.0)) * (rows - 1) / (span * size)
+    size_of = middle - order * np.log(lines)
+    found = np.argsort(-size_of)
+    return lines[found], np.exp(size_of[found] - size_of[found[0]])
 
 
 def harmonics(times: Array, values: Array, base: float, count: int) -> tuple[Complex, float]:
@@ -75,7 +79,7 @@ def repetition(times: Array, values: Array, frequency: float, same: float = SAME
 def drives(record: Record) -> list[tuple[float, int]]:
     """Drive frequencies [Hz] that a motion may have, each with its period m; several if none is known."""
     (times, values), same = record.rows.T, JUMPS if record.order == 1 else SAME
-    lines, given = peaks(times, values)[0], record.frequency
+    lines, given = peaks(times, values, record.order)[0], record.frequency
 
     def nearest(frequency: float) -> float:
         return float(lines[np.argmin(np.abs(lines - frequency))])
