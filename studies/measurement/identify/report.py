@@ -171,7 +171,10 @@ def report(run: Run, found: Mapping[str, Fit]) -> dict[str, Any]:
     run.table("profile", points, "Likelihood where two parameters trade off.", of=Profile, show=())
     holds = "Reading less fit of each row of a record, in the units of its columns: m, m/s, or an excess."
     run.arrays("residuals", holds, **{f"residuals_{name}": one.residuals for name, one in found.items()})
-    run.figure("identify", figure.draw(found, profiles), figure.CAPTION)
+    for name, one in found.items():
+        values = {row.parameter: row.value for row in estimates if row.record == name}
+        stem, title = (f"identify_{name}", f"Record: {name}") if len(found) > 1 else ("identify", "")
+        run.figure(stem, figure.draw(one, profiles[name], values, title), figure.CAPTION)
     for name, note in [(name, note) for name, one in found.items() for note in notes_of(one)]:
         run.say(f"{name}: {note}")
     own = [one for one in estimates if one.estimate and one.parameter not in UNITS]

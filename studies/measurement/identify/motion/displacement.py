@@ -132,6 +132,12 @@ class Displacement(Prediction):
         found.times, found._last = found.record.rows[:, 0], None
         return found
 
+    def between(self, times: Array) -> Self:
+        """The prediction at other times, the first row's the first."""
+        found = self.part(slice(None))
+        found.times = times
+        return found
+
     def reading(self, extra: Array) -> dict[str, float]:
         """The numbers of the sensor."""
         states = extra.size - len(self.sensor)
