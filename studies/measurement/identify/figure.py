@@ -18,20 +18,21 @@ from studies.shell import plotting
 from studies.shell.digits import minus, prefixed, written
 
 CAPTION = (
-    "(a) The record and its fit: two periods of an orbit, six drive periods of a motion that does not repeat, "
-    "three periods of strobe points, or all transitions. (b) Residuals and their histogram. (c) The 90 % "
-    "intervals of all parameters. (d) The likelihood along one of the two parameters that trade off most, "
-    "with all others fitted again, or all correlations."
+    "(a) The record and its fit: two periods of an orbit, six drive periods of another motion, three periods "
+    "of strobe points, or all transitions. (b) Residuals and their histogram. (c) The 90 % intervals of all "
+    "parameters. (d) The likelihood along one of the two parameters that trade off most, with all others "
+    "fitted again, or all correlations."
 )
 ORBITS, SHOWN, STROBES = 2, 6, 3  # orbits, drive periods of other motions, and periods of strobes shown
 FINE, DOTS, FEW = 200, 150, 200  # times of a curve; rows shown at most; rows with large dots at most
-MANY = 10.0  # ratio of the widths of intervals from which on their scale is logarithmic
+MANY, APART = 10.0, 3  # ratio of widths from which on their scale is logarithmic; decades of a label more
 DARK, SMALL, CELLS = 0.6, 5.5, 5  # correlation of a dark cell; size of its digits [pt]; least cells a side
-READINGS = {"x_m": ("displacement", 1e3, "mm", 1e3, "µm"), "v_m_per_s": ("velocity", 1.0, "m/s", 1e3, "mm/s")}
+READINGS = {"x_m": ("displacement", 1e3, "mm", 1e6, "µm"), "v_m_per_s": ("velocity", 1.0, "m/s", 1e3, "mm/s")}
 READINGS |= {"a_m_per_s2": ("acceleration", 1.0, "m/s²", 1.0, "m/s²")}
-READINGS |= {"excess": ("end of $p_m$", 1e2, "%", 1e2, "%")}
-"""Column -> name, scale and unit of its readings, scale and unit of its residuals."""
+READINGS |= dict.fromkeys(("excess", "error"), ("excess at the end of $p_m$", 1e2, "%", 1e2, "%"))
+"""Last column -> name, scale and unit of the readings, scale and unit of the residuals."""
 BLUE: plotting.Style = {"color": plotting.BLUE, "linestyle": "none", "markerfacecolor": "none"}
+PALE: plotting.Style = {"color": plotting.tint(plotting.BLUE, 0.5)}
 NOTE: plotting.Style = {"textcoords": "offset points", "fontsize": plotting.NOTE}
 
 
@@ -44,7 +45,7 @@ def draw(one: Fit, rows: Sequence[Profile], values: Mapping[str, str], title: st
         plotting.panel(axis, k, words[k])
     _record(*axes[0], one)
     axes[1, 0].set_axis_off()
-    _intervals(axes[1, 0].inset_axes([0.52, 0.0, 0.48, 1.0]), one, values)
+    _intervals(axes[1, 0].inset_axes([0.5, 0.0, 0.5, 1.0]), one, values)
     if rows:
         _profile(axes[1, 1], one, [row for row in rows if row.parameter == rows[0].parameter])
     else:
@@ -70,13 +71,11 @@ def _record(left: Axes, right: Axes, one: Fit) -> None:
             place, across = np.arange(1.0, len(seen) + 1.0), ("strobe", "1")
         shown = slice(STROBES * prediction.m or None)
         errors = None if prediction.m else scale / fine * noise
-        dots = left.errorbar(place[shown], seen[shown], errors, marker="o", **BLUE, elinewidth=0.7)
-        dots[0].set_label("record")
+        left.errorbar(place[shown], seen[shown], errors, marker="o", **BLUE, elinewidth=0.7, label="record")
         left.plot(place[shown], (seen - off * scale / fine)[shown], "k_", markersize=7.0, label="fit")
         left.xaxis.set_major_locator(MaxNLocator(6, integer=record.kind == "strobe"))
         plotting.label(left.xaxis, *across)
-    right.plot(place, off, "o", color=plotting.tint(plotting.BLUE, 0.6), mew=0.0, rasterized=True)
-    right.lines[0].set_markersize(1.2 if off.size > FEW else 3.0)
+    right.plot(place, off, "o", ms=1.3 if off.size > FEW else 3.0, mew=0.0, rasterized=True, **PALE)
     for way in (-1.0, 1.0):
         right.plot(place, way * noise, "k--", linewidth=0.7, label="±1 standard deviation of the noise")
     left.margins(y=0.15)
@@ -86,9 +85,9 @@ def _record(left: Axes, right: Axes, one: Fit) -> None:
     if record.kind != "transitions":  # they are few
         most = 1.1 * max(float(np.abs(off).max()), 3.0 * noise[0])
         side, at = right.inset_axes([1.02, 0.0, 0.18, 1.0], sharey=right), np.linspace(-most, most, FINE)
-        bins, look = min(max(math.isqrt(off.size), 8), 40), {"color": plotting.tint(plotting.BLUE, 0.4)}
-        side.hist(off, bins, (-most, most), True, orientation="horizontal", label="histogram", **look)
-        side.plot(norm.pdf(at, 0.0, noise[0]), at, "k", linewidth=0.8, label="its normal law")
+        bins = min(max(math.isqrt(off.size), 8), 40)
+        side.hist(off, bins, (-most, most), density=True, orientation="horizontal", **PALE)
+        side.plot(norm.pdf(at, 0.0, noise[0]), at, "k", linewidth=0.8, label="normal curve")
         side.tick_params(left=False, labelleft=False, bottom=False, labelbottom=False)
         right.set_ylim(-most, most)
 
@@ -104,13 +103,16 @@ def _motion(axis: Axes, one: Fit, prediction: Displacement, scale: float, unit: 
     hits = np.append(hits, hits + lasting)
     shown, (second, prefix) = np.flatnonzero(times <= times[0] + span), prefixed(span, "s")
     every = math.ceil(shown.size / DOTS)
-    name = f"record, 1 row in {every}" if every > 1 else "record"
-    axis.plot(times[shown[::every]] / second, scale * seen[shown[::every]], "o", ms=2.4, mew=0.5, **BLUE)
-    axis.lines[0].set(label=name, zorder=3)
+    look = {"label": f"record, 1 row in {every}" if every > 1 else "record", "zorder": 3} | BLUE
+    axis.plot(times[shown[::every]] / second, scale * seen[shown[::every]], "o", ms=2.4, mew=0.5, **look)
     axis.plot(fine.times / second, scale * fine.values(oscillator, extra)[:, 0], "k", lw=0.8, label="fit")
+    look = {
+        "label": "impact of the fit",
+        "transform": axis.get_xaxis_transform(),
+        "color": plotting.VERMILION,
+    }
     for hit in (times[0] + hits[hits <= span]) / second:
-        look: plotting.Style = {"transform": axis.get_xaxis_transform(), "color": plotting.VERMILION}
-        axis.plot(hit, 1.0, marker=7, ls="none", label="impact of the fit", clip_on=False, **look)
+        axis.plot(hit, 1.0, marker=7, linestyle="none", clip_on=False, **look)
     axis.set_xlim(times[0] / second, (times[0] + span) / second)
     plotting.label(axis.xaxis, "time", prefix)
     if unit == "mm":
@@ -123,31 +125,30 @@ def _motion(axis: Axes, one: Fit, prediction: Displacement, scale: float, unit: 
 def _intervals(axis: Axes, one: Fit, values: Mapping[str, str]) -> None:
     """A row a parameter: its name and printed value, and the 90 % interval about the estimate."""
     special = {"phase": (2.0 * math.pi, " / 2π"), "offset": (one.oscillator.stop.gap, " / gap")}
-    sizes, names = list[float](), list[str]()
-    for name, value, error in zip(one.names, one.estimate, one.errors, strict=True):
-        size, over = special.get(name, (abs(value), "") if value else (error, " / error"))
-        sizes.append(size)
-        names.append(f"{name.replace('_', ' ')}{over}  {values[name]}".replace("^1.5", "$^{1.5}$"))
-    ends = 100.0 * (one.intervals() - one.estimate[:, None]) / np.array(sizes)[:, None]
+    of = [
+        special.get(name, (abs(value), "") if value else (error, " / error"))
+        for name, value, error in zip(one.names, one.estimate, one.errors, strict=True)
+    ]
+    names = [f"{n.replace('_', ' ')}{over}  {values[n]}" for n, (_, over) in zip(one.names, of, strict=True)]
+    names = [name.replace("^1.5", "$^{1.5}$") for name in names]
+    ends = 100.0 * (one.intervals() - one.estimate[:, None]) / np.array([[size] for size, _ in of])
     half = np.abs(np.where(np.isfinite(ends), ends, 0.0)).max(axis=1)
-    first, last = (math.floor(math.log10(part)) for part in (half[half > 0.0].min(), 9.999 * half.max()))
-    limit, row = 1.2 * half.max(), np.arange(half.size)
-    if wide := half.max() > MANY * half[half > 0.0].min():
-        limit, ticks = 10.0**last, np.array([-(10.0**last), 0.0, 10.0**last])
-        if last - first > 1:
-            ticks = np.insert(
-                ticks, [1, 2], [-(10.0 ** ((first + last) // 2)), 10.0 ** ((first + last) // 2)]
-            )
-        axis.set_xscale("symlog", linthresh=10.0**first)
-        axis.minorticks_off()
-        axis.set_xticks(ticks, map(written, ticks))
+    widest, least, row = half.max(), half[half > 0.0].min(), np.arange(half.size)
+    limit = 1.2 * widest
+    if widest > MANY * least:
+        first, last = math.floor(math.log10(least)), math.ceil(math.log10(widest))
+        limit, decades = 10.0**last, 10.0 ** np.arange(first, last + 1)
+        axis.set_xscale("symlog", linthresh=decades[0])
+        shown = decades[[-1, (last - first) // 2][: 1 + (last - first >= APART)]]
+        axis.set_xticks(ticks := [*-shown, 0.0, *shown], map(written, ticks))
+        axis.set_xticks([*-decades, *decades], minor=True)
     axis.hlines(row, *np.clip(ends, -limit, limit).T, color=plotting.BLUE, linewidth=1.6)
     for i, k in np.argwhere(~np.isfinite(ends)):
         axis.plot([-limit, limit][k], i, "<>"[k], color=plotting.BLUE, clip_on=False)
     axis.plot(0.0 * row, row, "ko", markersize=2.6, label="estimate")
     axis.axvline(0.0, **plotting.GUIDE)
     axis.set(xlim=(-limit, limit), ylim=(row.size - 0.4, -0.6))
-    axis.set_yticks(row, names, fontsize=min(plotting.NOTE, 60.0 / row.size))
+    axis.set_yticks(row, names, fontsize=min(plotting.NOTE, 56.0 / row.size))
     plotting.label(axis.xaxis, "distance from estimate", "% of it")
 
 
@@ -156,10 +157,8 @@ def _profile(axis: Axes, one: Fit, own: Sequence[Profile]) -> None:
     other, known, names = axis.twinx(), parameters_of(one.oscillator), (own[0].parameter, own[0].other)
     held, first = np.unique([row.value for row in own], return_index=True)
     rise, values = np.array([(max(own[i].depth, 0.0), own[i].other_value) for i in first]).T
-    (scale, unit), (size, another) = (
-        prefixed(float(np.abs(ends).max()), known[name].unit)
-        for ends, name in zip((held, values), names, strict=True)
-    )
+    scale, unit = prefixed(float(np.abs(held).max()), known[names[0]].unit)
+    size, another = prefixed(float(np.abs(values).max()), known[names[1]].unit)
     at, root = np.linspace(held[0], held[-1], FINE), np.sign(held - held[rise.argmin()]) * np.sqrt(rise)
     curves = PchipInterpolator(held, root)(at) ** 2, PchipInterpolator(held, values / size)(at)
     words = "rise of $\\chi^2$", "other parameter, fitted again"
@@ -169,12 +168,12 @@ def _profile(axis: Axes, one: Fit, own: Sequence[Profile]) -> None:
         side.plot(held / scale, points, **look | {"linestyle": "none"}, label=words[k])
         side.tick_params(axis="y", colors=look["color"])
         side.yaxis.label.set_color(look["color"])
-        side.yaxis.set_major_locator(MaxNLocator(4, steps=[1, 2, 5, 10]))
+        side.yaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 2.5, 5, 10], min_n_ticks=3))
         side.margins(y=0.12)
     axis.axhline(one.reach**2, **plotting.GUIDE)
     across = axis.get_yaxis_transform()
     axis.annotate("90 %", (0.5, one.reach**2), (0.0, 1.5), xycoords=across, ha="center", **NOTE)
-    axis.xaxis.set_major_locator(MaxNLocator(3))
+    axis.xaxis.set_major_locator(MaxNLocator(3, min_n_ticks=3))
     other.spines["right"].set_visible(True)
     plotting.label(axis.xaxis, names[0].replace("_", " "), unit)
     plotting.label(axis.yaxis, words[0])

@@ -18,6 +18,7 @@ from studies.shell.scene import Scene
 
 TRADE, NOTABLE = 0.95, 0.5  # correlations from which on two parameters trade off, or are shown
 MOST = 10  # correlations that are shown
+PARTS = (-1.0, -0.5, 0.5, 1.0)  # of the reach, to which profiles are followed
 UNLIKE = 2.0  # ratio of a fitted amplitude to a given one that contradicts it; clamped beams: 1.57
 SHOWN = ("record", "parameter", "value", "interval", "began", "in_scene")  # columns on the terminal
 
@@ -130,7 +131,7 @@ def traded(found: Fit, quick: bool) -> list[Profile]:
     rows = list[Profile]()
     for i in kept[: 1 if quick else None]:
         walk = found.walk(found.names[i])
-        points = [point for way in (-1.0, 1.0) for point in walk.side(way * found.reach)[0]]
+        points = [point for part in PARTS for point in walk.side(part * found.reach)[0]]
         rows += rows_of(walk, points, found.names[partners[i]])
     return rows
 
