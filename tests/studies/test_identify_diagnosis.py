@@ -276,9 +276,11 @@ def test_a_scale_is_found_where_the_gap_or_the_amplitude_is_held(scene_of_eq1, s
         right(found, amplitude)
         assert found.estimate[-1] == pytest.approx(-0.85, abs=4.0 * found.errors[-1])
     rows = [Profile(parameter="gap", value=v, other="decay_rate", other_value=v, depth=v) for v in (1.0, 2.0)]
-    drawn = figure.draw({"mine": found}, {"mine": rows})
+    drawn = figure.draw(found, rows, {name: "1(1)" for name in found.names})
     named = [text.get_text() for text in drawn.legends[0].get_texts()]
-    assert named[2:] == ["rise of $\\chi^2$", "90 % interval", "other parameter, fitted again"]
+    assert named[-2:] == ["rise of $\\chi^2$", "other parameter, fitted again"]
+    impacts = [line for line in drawn.axes[0].lines if line.get_label() == "impact of the fit"]
+    assert len(impacts) == 2  # two periods
     for side in drawn.axes[-2:]:  # an axis has the colour of its curve
         assert side.yaxis.label.get_color() == side.lines[0].get_color()
 

@@ -31,8 +31,12 @@ READINGS = {"x_m": ("displacement", 1e3, "mm", 1e6, "µm"), "v_m_per_s": ("veloc
 READINGS |= {"a_m_per_s2": ("acceleration", 1.0, "m/s²", 1.0, "m/s²")}
 READINGS |= dict.fromkeys(("excess", "error"), ("excess at the end of $p_m$", 1e2, "%", 1e2, "%"))
 """Last column -> name, scale and unit of the readings, scale and unit of the residuals."""
+OVER = {"phase": " / 2π", "offset": " / gap"}  # what an interval of a number that may be zero is divided by
+RISE, AGAIN = "rise of $\\chi^2$", "other parameter, fitted again"
 BLUE: plotting.Style = {"color": plotting.BLUE, "linestyle": "none", "markerfacecolor": "none"}
 PALE: plotting.Style = {"color": plotting.tint(plotting.BLUE, 0.5)}
+HIT: plotting.Style = {"marker": 7, "color": plotting.VERMILION, "linestyle": "none", "clip_on": False}
+HIT |= {"label": "impact of the fit"}
 NOTE: plotting.Style = {"textcoords": "offset points", "fontsize": plotting.NOTE}
 
 
@@ -51,8 +55,7 @@ def draw(one: Fit, rows: Sequence[Profile], values: Mapping[str, str], title: st
     else:
         _correlations(axes[1, 1], one)
     plotting.legend_below(figure, [part for axis in figure.axes for part in (axis, *axis.child_axes)], 4)
-    if title:
-        figure.suptitle(title)
+    figure.suptitle(title)
     return figure
 
 
@@ -60,39 +63,38 @@ def _record(left: Axes, right: Axes, one: Fit) -> None:
     """The first rows and their fit, then all residuals and the deviation of the noise."""
     record, prediction, place = one.record, one.problem.prediction, one.record.rows[:, 0]
     words, scale, unit, fine, small = READINGS[record.columns[-1 if record.kind != "strobe" else 0]]
-    seen, off, across = scale * record.observed[:, 0], fine * one.residuals[:, 0], ("drive frequency", "Hz")
+    off, across, few = fine * one.residuals[:, 0], ("drive frequency", "Hz"), record.kind == "transitions"
     noise = record.units(one.problem.noise)[:, 0] * fine * one.noise / one.problem.noise
     if isinstance(prediction, Displacement):
-        _motion(left, one, prediction, scale, unit)
         second, prefix = prefixed(place[-1] - place[0], "s")
+        _motion(left, one, prediction, scale, second)
         place, across = place / second, ("time", prefix)
     else:
         if record.kind == "strobe":
-            place, across = np.arange(1.0, len(seen) + 1.0), ("strobe", "1")
-        shown = slice(STROBES * prediction.m or None)
-        errors = None if prediction.m else scale / fine * noise
-        left.errorbar(place[shown], seen[shown], errors, marker="o", **BLUE, elinewidth=0.7, label="record")
-        left.plot(place[shown], (seen - off * scale / fine)[shown], "k_", markersize=7.0, label="fit")
-        left.xaxis.set_major_locator(MaxNLocator(6, integer=record.kind == "strobe"))
-        plotting.label(left.xaxis, *across)
+            place, across = np.arange(1.0, len(place) + 1.0), ("strobe", "1")
+        shown, errors = slice(STROBES * prediction.m or None), scale / fine * noise if few else None
+        seen, off_ = scale * record.observed[shown, 0], scale / fine * off[shown]
+        left.errorbar(place[shown], seen, errors, marker="o", **BLUE, elinewidth=0.7, label="record")
+        left.plot(place[shown], seen - off_, "k_", markersize=7.0, label="fit")
+        left.xaxis.set_major_locator(MaxNLocator(6, integer=not few))
     right.plot(place, off, "o", ms=1.3 if off.size > FEW else 3.0, mew=0.0, rasterized=True, **PALE)
     for way in (-1.0, 1.0):
         right.plot(place, way * noise, "k--", linewidth=0.7, label="±1 standard deviation of the noise")
-    left.margins(y=0.15)
+    left.margins(0.02, 0.15)
     plotting.label(left.yaxis, words, unit)
-    plotting.label(right.xaxis, *across)
     plotting.label(right.yaxis, "record less fit", small)
-    if record.kind != "transitions":  # they are few
-        most = 1.1 * max(float(np.abs(off).max()), 3.0 * noise[0])
+    for axis in (left, right):
+        plotting.label(axis.xaxis, *across)
+    if not few:
+        most, bins = 1.1 * max(float(np.abs(off).max()), 3.0 * noise[0]), min(8 + off.size // 50, 40)
         side, at = right.inset_axes([1.02, 0.0, 0.18, 1.0], sharey=right), np.linspace(-most, most, FINE)
-        bins = min(max(math.isqrt(off.size), 8), 40)
         side.hist(off, bins, (-most, most), density=True, orientation="horizontal", **PALE)
         side.plot(norm.pdf(at, 0.0, noise[0]), at, "k", linewidth=0.8, label="normal curve")
         side.tick_params(left=False, labelleft=False, bottom=False, labelbottom=False)
         right.set_ylim(-most, most)
 
 
-def _motion(axis: Axes, one: Fit, prediction: Displacement, scale: float, unit: str) -> None:
+def _motion(axis: Axes, one: Fit, prediction: Displacement, scale: float, second: float) -> None:
     """Rows as open dots, the fit at finely spaced times, its impacts, and the stop."""
     (oscillator, extra), (times, seen) = one.problem.at(one.unknowns), one.record.rows.T
     lasting, count = prediction.m * oscillator.period or math.inf, ORBITS * prediction.m or SHOWN
@@ -100,22 +102,14 @@ def _motion(axis: Axes, one: Fit, prediction: Displacement, scale: float, unit: 
     fine = prediction.between(times[0] + np.linspace(0.0, span, FINE * count))
     run, place = fine.run(oscillator, extra)
     hits = (run.impacts.start - run.time[place[0]]) % lasting
-    hits = np.append(hits, hits + lasting)
-    shown, (second, prefix) = np.flatnonzero(times <= times[0] + span), prefixed(span, "s")
+    shown = np.flatnonzero(times <= times[0] + span)
     every = math.ceil(shown.size / DOTS)
-    look = {"label": f"record, 1 row in {every}" if every > 1 else "record", "zorder": 3} | BLUE
+    look = BLUE | {"label": f"record, 1 row in {every}" if every > 1 else "record", "zorder": 3}
     axis.plot(times[shown[::every]] / second, scale * seen[shown[::every]], "o", ms=2.4, mew=0.5, **look)
     axis.plot(fine.times / second, scale * fine.values(oscillator, extra)[:, 0], "k", lw=0.8, label="fit")
-    look = {
-        "label": "impact of the fit",
-        "transform": axis.get_xaxis_transform(),
-        "color": plotting.VERMILION,
-    }
-    for hit in (times[0] + hits[hits <= span]) / second:
-        axis.plot(hit, 1.0, marker=7, linestyle="none", clip_on=False, **look)
-    axis.set_xlim(times[0] / second, (times[0] + span) / second)
-    plotting.label(axis.xaxis, "time", prefix)
-    if unit == "mm":
+    for hit in [hit for hit in (*hits, *(hits + lasting)) if hit <= span]:
+        axis.plot((times[0] + hit) / second, 1.0, transform=axis.get_xaxis_transform(), **HIT)
+    if one.record.columns[1] == "x_m":
         sensor, across = prediction.reading(extra), axis.get_yaxis_transform()
         gap = scale * (sensor["offset"] + sensor["scale"] * oscillator.stop.gap)
         axis.axhline(gap, **plotting.GUIDE)
@@ -124,14 +118,11 @@ def _motion(axis: Axes, one: Fit, prediction: Displacement, scale: float, unit: 
 
 def _intervals(axis: Axes, one: Fit, values: Mapping[str, str]) -> None:
     """A row a parameter: its name and printed value, and the 90 % interval about the estimate."""
-    special = {"phase": (2.0 * math.pi, " / 2π"), "offset": (one.oscillator.stop.gap, " / gap")}
-    of = [
-        special.get(name, (abs(value), "") if value else (error, " / error"))
-        for name, value, error in zip(one.names, one.estimate, one.errors, strict=True)
-    ]
-    names = [f"{n.replace('_', ' ')}{over}  {values[n]}" for n, (_, over) in zip(one.names, of, strict=True)]
+    sizes = dict(zip(one.names, np.where(one.estimate, np.abs(one.estimate), one.errors), strict=True))
+    sizes |= {"phase": 2.0 * math.pi, "offset": one.oscillator.stop.gap}
+    names = [f"{name.replace('_', ' ')}{OVER.get(name, '')}  {values[name]}" for name in one.names]
     names = [name.replace("^1.5", "$^{1.5}$") for name in names]
-    ends = 100.0 * (one.intervals() - one.estimate[:, None]) / np.array([[size] for size, _ in of])
+    ends = 100.0 * (one.intervals().T - one.estimate).T / np.array([[sizes[name]] for name in one.names])
     half = np.abs(np.where(np.isfinite(ends), ends, 0.0)).max(axis=1)
     widest, least, row = half.max(), half[half > 0.0].min(), np.arange(half.size)
     limit = 1.2 * widest
@@ -139,7 +130,7 @@ def _intervals(axis: Axes, one: Fit, values: Mapping[str, str]) -> None:
         first, last = math.floor(math.log10(least)), math.ceil(math.log10(widest))
         limit, decades = 10.0**last, 10.0 ** np.arange(first, last + 1)
         axis.set_xscale("symlog", linthresh=decades[0])
-        shown = decades[[-1, (last - first) // 2][: 1 + (last - first >= APART)]]
+        shown = decades[[-1, (last - first - 1) // 2][: 1 + (last - first >= APART)]]
         axis.set_xticks(ticks := [*-shown, 0.0, *shown], map(written, ticks))
         axis.set_xticks([*-decades, *decades], minor=True)
     axis.hlines(row, *np.clip(ends, -limit, limit).T, color=plotting.BLUE, linewidth=1.6)
@@ -161,22 +152,20 @@ def _profile(axis: Axes, one: Fit, own: Sequence[Profile]) -> None:
     size, another = prefixed(float(np.abs(values).max()), known[names[1]].unit)
     at, root = np.linspace(held[0], held[-1], FINE), np.sign(held - held[rise.argmin()]) * np.sqrt(rise)
     curves = PchipInterpolator(held, root)(at) ** 2, PchipInterpolator(held, values / size)(at)
-    words = "rise of $\\chi^2$", "other parameter, fitted again"
-    for k, (side, points) in enumerate(((axis, rise), (other, values / size))):
+    for k, (side, points, words) in enumerate(((axis, rise, RISE), (other, values / size, AGAIN))):
         look = plotting.series(k + 1)
         side.plot(at / scale, curves[k], color=look["color"], linestyle=look["linestyle"])
-        side.plot(held / scale, points, **look | {"linestyle": "none"}, label=words[k])
+        side.plot(held / scale, points, **look | {"linestyle": "none"}, label=words)
         side.tick_params(axis="y", colors=look["color"])
         side.yaxis.label.set_color(look["color"])
         side.yaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 2.5, 5, 10], min_n_ticks=3))
         side.margins(y=0.12)
     axis.axhline(one.reach**2, **plotting.GUIDE)
-    across = axis.get_yaxis_transform()
-    axis.annotate("90 %", (0.5, one.reach**2), (0.0, 1.5), xycoords=across, ha="center", **NOTE)
+    axis.annotate("90 %", (at.mean() / scale, one.reach**2), (0.0, 1.5), ha="center", **NOTE)
     axis.xaxis.set_major_locator(MaxNLocator(3, min_n_ticks=3))
     other.spines["right"].set_visible(True)
     plotting.label(axis.xaxis, names[0].replace("_", " "), unit)
-    plotting.label(axis.yaxis, words[0])
+    plotting.label(axis.yaxis, RISE)
     plotting.label(other.yaxis, names[1].replace("_", " "), another.replace("^1.5", "$^{1.5}$"))
 
 
@@ -190,7 +179,7 @@ def _correlations(axis: Axes, one: Fit) -> None:
     side = max(count, CELLS) - 0.5
     axis.set(xlim=(-0.5, side), ylim=(side, -0.5), xticks=[], yticks=range(1, count), yticklabels=names[1:])
     axis.tick_params(left=False)
-    axis.spines[:].set_visible(False)
+    axis.set_frame_on(False)
     for i, j in zip(*np.tril_indices(count, -1), strict=True):
         look = {"color": "white" if abs(shown[i, j]) > DARK else "black", "fontsize": SMALL}
         axis.text(j, i, minus(f"{shown[i, j]:.2f}"), ha="center", va="center", **look)

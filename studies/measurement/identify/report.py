@@ -18,7 +18,6 @@ from studies.shell.scene import Scene
 
 TRADE, NOTABLE = 0.95, 0.5  # correlations from which on two parameters trade off, or are shown
 MOST = 10  # correlations that are shown
-PARTS = (-1.0, -0.5, 0.5, 1.0)  # of the reach, to which profiles are followed
 UNLIKE = 2.0  # ratio of a fitted amplitude to a given one that contradicts it; clamped beams: 1.57
 SHOWN = ("record", "parameter", "value", "interval", "began", "in_scene")  # columns on the terminal
 
@@ -131,7 +130,9 @@ def traded(found: Fit, quick: bool) -> list[Profile]:
     rows = list[Profile]()
     for i in kept[: 1 if quick else None]:
         walk = found.walk(found.names[i])
-        points = [point for part in PARTS for point in walk.side(part * found.reach)[0]]
+        sides = [(reach, walk.side(reach)[0]) for reach in (-found.reach, found.reach)]
+        points = [point for _, side in sides for point in side]
+        points += [p for reach, side in sides if len(side) == 1 for p in walk.side(0.5 * reach)[0]]
         rows += rows_of(walk, points, found.names[partners[i]])
     return rows
 
