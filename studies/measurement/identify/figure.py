@@ -49,6 +49,7 @@ def draw(one: Fit, rows: Sequence[Profile], values: Mapping[str, str], title: st
         plotting.panel(axis, k, words[k])
     _record(*axes[0], one)
     axes[1, 0].set_axis_off()
+    values = {name: value.replace("^1.5", "$^{1.5}$") for name, value in values.items()}
     _intervals(axes[1, 0].inset_axes([0.5, 0.0, 0.5, 1.0]), one, values)
     if rows:
         _profile(axes[1, 1], one, [row for row in rows if row.parameter == rows[0].parameter])
@@ -81,14 +82,13 @@ def _record(left: Axes, right: Axes, one: Fit) -> None:
     for way in (-1.0, 1.0):
         right.plot(place, way * noise, "k--", linewidth=0.7, label="±1 standard deviation of the noise")
     left.margins(0.02, 0.15)
-    plotting.label(left.yaxis, words, unit)
-    plotting.label(right.yaxis, "record less fit", small)
-    for axis in (left, right):
+    for axis, name, its in ((left, words, unit), (right, "record less fit", small)):
+        plotting.label(axis.yaxis, name, its)
         plotting.label(axis.xaxis, *across)
     if not few:
         most, bins = 1.1 * max(float(np.abs(off).max()), 3.0 * noise[0]), min(8 + off.size // 50, 40)
         side, at = right.inset_axes([1.02, 0.0, 0.18, 1.0], sharey=right), np.linspace(-most, most, FINE)
-        side.hist(off, bins, (-most, most), density=True, orientation="horizontal", **PALE)
+        side.hist(off, bins, range=(-most, most), density=True, orientation="horizontal", **PALE)
         side.plot(norm.pdf(at, 0.0, noise[0]), at, "k", linewidth=0.8, label="normal curve")
         side.tick_params(left=False, labelleft=False, bottom=False, labelbottom=False)
         right.set_ylim(-most, most)
@@ -121,7 +121,6 @@ def _intervals(axis: Axes, one: Fit, values: Mapping[str, str]) -> None:
     sizes = dict(zip(one.names, np.where(one.estimate, np.abs(one.estimate), one.errors), strict=True))
     sizes |= {"phase": 2.0 * math.pi, "offset": one.oscillator.stop.gap}
     names = [f"{name.replace('_', ' ')}{OVER.get(name, '')}  {values[name]}" for name in one.names]
-    names = [name.replace("^1.5", "$^{1.5}$") for name in names]
     ends = 100.0 * (one.intervals().T - one.estimate).T / np.array([[sizes[name]] for name in one.names])
     half = np.abs(np.where(np.isfinite(ends), ends, 0.0)).max(axis=1)
     widest, least, row = half.max(), half[half > 0.0].min(), np.arange(half.size)
