@@ -55,7 +55,8 @@ def in_both_styles(draw: Callable[..., Figure]) -> Callable[..., Figure]:
                 figure = draw(*of)
                 patch.setattr(Text, "draw", lambda one, renderer: (texts.append(one), by(one, renderer)))
                 figure.canvas.draw()
-            boxes = {one: one.get_window_extent() for one in dict.fromkeys(texts) if one.get_text()}
+            shown = [one for one in dict.fromkeys(texts) if one.get_visible() and one.get_text()]
+            boxes = {one: one.get_window_extent() for one in shown}
             pairs = combinations(boxes.items(), 2)
             lap = [(a, b) for (a, x), (b, y) in pairs if all(np.fmin(x.max, y.max) > np.fmax(x.min, y.min))]
             both = [f"{a.get_text()}|{b.get_text()}" for a, b in lap]
