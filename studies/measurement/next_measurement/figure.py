@@ -10,7 +10,7 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
-from matplotlib.ticker import FuncFormatter, LogLocator
+from matplotlib.ticker import FuncFormatter
 
 from studies import letter
 from studies.measurement.next_measurement import model
@@ -80,7 +80,7 @@ def draw_plane(found: Sequence[Measurement], plan: Plan, letters: bool) -> Figur
         if np.isfinite(seen).any():
             mesh = axis.pcolormesh(*cells, seen, cmap="viridis_r", norm=LogNorm())
             ends = float(np.nanmin(seen)), float(np.nanmax(seen))
-            ticks = LogLocator(subs=(1, 3)).tick_values(*ends)
+            ticks = np.outer(10.0 ** np.arange(-15.0, 15.0), (1.0, 3.0)).ravel()
             ticks = ticks[(ends[0] <= ticks) & (ticks <= ends[1])]
             ticks = ticks if ticks.size > 2 else np.unique(np.geomspace(*ends, 3))
             bar = figure.colorbar(mesh, ax=axis, location="bottom", label=words, ticks=ticks)
