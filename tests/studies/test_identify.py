@@ -283,9 +283,7 @@ def test_the_example_makes_a_record_of_each_kind_and_finds_what_it_put_in(run_st
     assert all(read_record(ran.folder / f"{kind}.csv").kind == kind for kind in program.EXAMPLES)
     for row in ran.rows("parameters"):
         assert abs(float(row["estimate"]) - float(row["scene"])) < 4.0 * float(row["standard_error"])
-    assert {row["parameter"] for row in ran.rows("profile")} & {"delay", "restitution"} and ran.summary[
-        "next"
-    ]
+    assert {row["parameter"] for row in ran.rows("profile")} & {"delay", "restitution"}
     assert {row["orbits"] for row in ran.rows("letter_orbits")} > {"p3", "p11"}
     own = [row for row in ran.rows("parameters") if row["parameter"] not in UNITS]
     share = 100.0 * max(abs(float(row["standard_error"]) / float(row["estimate"])) for row in own)

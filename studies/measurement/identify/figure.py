@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
+from itertools import combinations
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -47,7 +48,7 @@ def draw(one: Fit, rows: Sequence[Profile], values: Mapping[str, str], title: st
     words = "Record and fit", "Residuals", "90 % intervals", "Profile" if rows else "Correlations"
     for k, axis in enumerate(axes.flat):
         plotting.panel(axis, k, words[k])
-    _record(*axes[0], one)
+    _record(axes[0, 0], axes[0, 1], one)
     axes[1, 0].set_axis_off()
     values = {name: value.replace("^1.5", "$^{1.5}$") for name, value in values.items()}
     _intervals(axes[1, 0].inset_axes([0.5, 0.0, 0.5, 1.0]), one, values)
@@ -55,7 +56,7 @@ def draw(one: Fit, rows: Sequence[Profile], values: Mapping[str, str], title: st
         _profile(axes[1, 1], one, [row for row in rows if row.parameter == rows[0].parameter])
     else:
         _correlations(axes[1, 1], one)
-    plotting.legend_below(figure, [part for axis in figure.axes for part in (axis, *axis.child_axes)], 4)
+    plotting.legend_below(figure, [*figure.axes, *axes[0, 1].child_axes, *axes[1, 0].child_axes], 4)
     figure.suptitle(title)
     return figure
 
@@ -87,7 +88,7 @@ def _record(left: Axes, right: Axes, one: Fit) -> None:
         plotting.label(axis.xaxis, *across)
     if not few:
         most, bins = 1.1 * max(float(np.abs(off).max()), 3.0 * noise[0]), min(8 + off.size // 50, 40)
-        side, at = right.inset_axes([1.02, 0.0, 0.18, 1.0], sharey=right), np.linspace(-most, most, FINE)
+        side, at = right.inset_axes((1.02, 0.0, 0.18, 1.0), sharey=right), np.linspace(-most, most, FINE)
         side.hist(off, bins, range=(-most, most), density=True, orientation="horizontal", **PALE)
         side.plot(norm.pdf(at, 0.0, noise[0]), at, "k", linewidth=0.8, label="normal curve")
         side.tick_params(left=False, labelleft=False, bottom=False, labelbottom=False)
@@ -173,14 +174,14 @@ def _correlations(axis: Axes, one: Fit) -> None:
     names, count = [name.replace("_", " ") for name in one.names], len(one.names)
     shown = np.where(np.tri(count, k=-1) > 0.0, one.correlations, np.nan)
     image = axis.imshow(shown, vmin=-1.0, vmax=1.0, cmap="RdBu", aspect="auto")
-    bar = axis.figure.colorbar(image, cax=axis.inset_axes([1.04, 0.0, 0.05, 1.0]), ticks=[-1.0, 0.0, 1.0])
+    bar = axis.figure.colorbar(image, cax=axis.inset_axes((1.04, 0.0, 0.05, 1.0)), ticks=[-1.0, 0.0, 1.0])
     plotting.label(bar.ax.yaxis, "correlation")
     side = max(count, CELLS) - 0.5
     axis.set(xlim=(-0.5, side), ylim=(side, -0.5), xticks=[], yticks=range(1, count), yticklabels=names[1:])
     axis.tick_params(left=False)
     axis.set_frame_on(False)
-    for i, j in zip(*np.tril_indices(count, -1), strict=True):
-        look = {"color": "white" if abs(shown[i, j]) > DARK else "black", "fontsize": SMALL}
-        axis.text(j, i, minus(f"{shown[i, j]:.2f}"), ha="center", va="center", **look)
+    for i, j in combinations(range(count), 2):
+        look: plotting.Style = {"color": "white" if abs(shown[j, i]) > DARK else "black", "fontsize": SMALL}
+        axis.text(i, j, minus(f"{shown[j, i]:.2f}"), ha="center", va="center", **look)
     for j, name in enumerate(names[:-1]):
         axis.text(j - 0.4, j, name, va="center", fontsize=plotting.NOTE)
