@@ -56,7 +56,8 @@ def draw(one: Fit, rows: Sequence[Profile], values: Mapping[str, str], title: st
         _profile(axes[1, 1], one, [row for row in rows if row.parameter == rows[0].parameter])
     else:
         _correlations(axes[1, 1], one)
-    plotting.legend_below(figure, [*figure.axes, *axes[0, 1].child_axes, *axes[1, 0].child_axes], 4)
+    parts = [*axes[0], *axes[0, 1].child_axes, *axes[1, 0].child_axes, *figure.axes]
+    plotting.legend_below(figure, parts, 4)
     figure.suptitle(title)
     return figure
 
