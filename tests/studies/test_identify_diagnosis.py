@@ -247,8 +247,7 @@ def test_units_and_a_drive_that_contradict_the_record_are_wrong_use(scene_of_eq1
         one = replace(record, rows=record.rows * scales, frequency=frequency, amplitude=height)
         with pytest.raises(InvalidValue, match=sentence):
             fit(one, with_values(scene_of_eq1, {"gap": 0.0105, "amplitude": height or amplitude}), ALL)
-    found = fit(replace(record, frequency=1.005 * F), scene_of_eq1, ALL)
-    right(found, amplitude)
+    right(found := fit(replace(record, frequency=1.005 * F), scene_of_eq1, ALL), amplitude)
     assert "the given drive of 22.311 Hz is off by +0.5" in found.record.notes[0]
     sentence = r"the model is too small .*; the best values found, of unknown error, are free_period 40\.8"
     with pytest.raises(NoAnswer, match=sentence):
@@ -275,10 +274,11 @@ def test_a_scale_is_found_where_the_gap_or_the_amplitude_is_held(scene_of_eq1, s
         found = fit(record, at, names, free=("phase", "offset", "scale"))
         right(found, amplitude)
         assert found.estimate[-1] == pytest.approx(-0.85, abs=4.0 * found.errors[-1])
-    rows = [Profile(parameter="gap", value=v, other="decay_rate", other_value=v, depth=v) for v in (1.0, 2.0)]
-    drawn = figure.draw({"mine": found}, {"mine": rows})
-    named = [text.get_text() for text in drawn.legends[0].get_texts()]
-    assert named[2:] == ["rise of $\\chi^2$", "90 % interval", "other parameter, fitted again"]
+    rows = [Profile("gap", value, "decay_rate", value, value) for value in (1.0, 2.0)]
+    drawn = figure.draw(found, rows, {name: "1(1)" for name in found.names})
+    assert drawn.legends[0].get_texts()[-1].get_text() == "other parameter, fitted again"
+    run, _ = found.problem.prediction.run(*found.problem.at(found.unknowns))
+    assert sum(line.get_label()[:6] == "impact" for line in drawn.axes[0].lines) == 2 * len(run.impacts)
     for side in drawn.axes[-2:]:  # an axis has the colour of its curve
         assert side.yaxis.label.get_color() == side.lines[0].get_color()
 

@@ -8,12 +8,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from oscillators import slow
+from page_judge import in_both_styles
 from record_information import judged_by_information, truth_of
 from record_simulators import draw, reading
 from record_trials import begun, trial_of
 
+from studies.measurement.identify import figure
 from studies.measurement.identify.fit.search import fit
-from studies.measurement.identify.record.records import CHANNELS, NoAnswer, Record
+from studies.measurement.identify.record.records import CHANNELS, NoAnswer, Record, synthetic
+from studies.measurement.identify.report import estimates_of, traded
+from studies.shell.scene import beam_at, read_scene
 
 QUICK = {"equation_1": (24, 28, 9, 45), "two_modes": (5, 22)}
 """Records of p1 to p6 that determine all parameters and are soon fitted.  The drive is known for even seeds;
@@ -85,3 +89,12 @@ def test_a_velocity_or_an_acceleration_is_compared_as_it_was_read(kind, seed, or
 def test_no_answer_leaves_a_process_as_itself():
     error = pickle.loads(pickle.dumps(NoAnswer("the record is too short")))
     assert type(error) is NoAnswer and str(error) == "the record is too short" and math.isnan(error.gap)
+
+
+def test_the_figure_of_a_beams_record_overprints_no_text() -> None:
+    beam = beam_at(read_scene("letter", ["modes.count=4"]), 22.2).with_excess(1e-3)
+    for kind, names in {"strobe": ("tip_mass", "gap"), "motion": ("gap", "stiffness", "amplitude")}.items():
+        found = fit(synthetic(kind, beam, seed=7, periods=20), beam, names)
+        values = {row.parameter: row.value for row in estimates_of("beam", found)}
+        for rows in (traded(found, quick=True), []):
+            in_both_styles(figure.draw)(found, rows, values)

@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
 from oscillators import equation_1
+from page_judge import in_both_styles
 from scipy.optimize import least_squares
 
 from contact import DelayedRestitution, simulate
@@ -137,8 +137,9 @@ def test_the_errors_by_the_letters_orbits(plane):
     rows = design.letter_rows(of, PLAN)
     best = min((row for row in rows if row.other_speed), key=lambda row: row.errors["restitution"])
     assert best.orbits == "p3 and p5" in design.findings(plane, rows)[1]
-    drawn, other = (figure.draw_plane(plane, PLAN, letters) for letters in (True, False))
-    assert isinstance(drawn, Figure) and len(drawn.axes) == 6
+    draw = in_both_styles(figure.draw_plane)
+    drawn, other = (draw(plane, PLAN, letters) for letters in (True, False))
+    assert all(len(bar.get_xticks()) > 2 for bar in drawn.axes[3:]) and len(drawn.axes) == 6
     marked = [[text.get_text() for text in one.legends[0].get_texts()] for one in (drawn, other)]
     assert {*marked[0]} - {*marked[1]} == {"letter, at an excess of 0.001"}
 

@@ -42,9 +42,9 @@ with the restitution and the constant delay of the fit.  A place counts if the o
 
 Run:     python -m studies identify [RECORD.csv --fit T tau gap phase] [--next NAMES]
 Writes:  parameters.csv and correlations.csv, quality.csv, profile.csv, residuals.npz, identify.png (record
-         and fit, residuals, profile), fitted.toml, a scene that every study takes; the example also its
-         three records; --next and the example measurements.csv (a row an orbit), next.csv (the best five),
-         letter_orbits.csv, next.png
+         and fit, residuals, intervals, profile), fitted.toml, a scene that every study takes; the example
+         a figure a record, and its three records; --next and the example measurements.csv (a row an
+         orbit), next.csv (the best five), letter_orbits.csv, next.png
 """
 
 from collections.abc import Mapping, Sequence

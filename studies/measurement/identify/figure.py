@@ -1,102 +1,188 @@
-"""Each record with its fit, residuals and trade-off."""
+"""A record with its fit, its residuals, the intervals of all parameters, and which of them trade off."""
 
+import math
 from collections.abc import Mapping, Sequence
-from typing import Any
+from itertools import combinations
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
+from matplotlib.ticker import MaxNLocator
+from scipy.interpolate import PchipInterpolator
+from scipy.stats import norm
 
 from studies.measurement.identify.fit.profiles import Profile
 from studies.measurement.identify.fit.result import Fit
+from studies.measurement.identify.motion.displacement import Displacement
 from studies.physics.parameters import parameters_of
 from studies.shell import plotting
-from studies.shell.digits import minus
+from studies.shell.digits import minus, prefixed, written
 
 CAPTION = (
-    "Each record with its fit (left), residuals (middle), and the profile likelihood of the two parameters "
-    "that trade off most, or the correlations of all (right)."
+    "(a) The record and its fit: two periods of an orbit, six drive periods of another motion, three periods "
+    "of strobe points, or all transitions. (b) Residuals and their histogram. (c) The 90 % intervals of all "
+    "parameters. (d) The likelihood along one of the two parameters that trade off most, with all others "
+    "fitted again, or all correlations."
 )
-SHOWN = 6  # drive periods of a displacement
-DEPTH = 2.71  # rise of chi^2 at the ends of a 90 % interval
-DARK, SMALL = 0.6, 5.5  # correlation from which on its cell is dark; size of its digits [pt]
-FITTED: plotting.Style = {"linestyle": "none", "marker": "_", "color": "black", "zorder": 5, "label": "fit"}
-DOTS: plotting.Style = {"linestyle": "none", "marker": ".", "markersize": 2, "rasterized": True}
+ORBITS, SHOWN, STROBES = 2, 6, 3  # orbits, drive periods of other motions, and periods of strobes shown
+FINE, DOTS, FEW = 200, 150, 200  # times of a curve; rows shown at most; rows with large dots at most
+MANY, APART = 10.0, 3  # ratio of widths from which on their scale is logarithmic; decades of a label more
+DARK, SMALL, CELLS = 0.6, 5.5, 5  # correlation of a dark cell; size of its digits [pt]; least cells a side
+READINGS = {"x_m": ("displacement", 1e3, "mm", 1e6, "µm"), "v_m_per_s": ("velocity", 1.0, "m/s", 1e3, "mm/s")}
+READINGS |= {"a_m_per_s2": ("acceleration", 1.0, "m/s²", 1.0, "m/s²")}
+READINGS |= dict.fromkeys(("excess", "error"), ("excess at the end of $p_m$", 1e2, "%", 1e2, "%"))
+"""Last column -> name, scale and unit of the readings, scale and unit of the residuals."""
+OVER = {"phase": " / 2π", "offset": " / gap"}  # what an interval of a number that may be zero is divided by
+RISE, AGAIN = "rise of $\\chi^2$", "other parameter, fitted again"
+BLUE: plotting.Style = {"color": plotting.BLUE, "linestyle": "none", "markerfacecolor": "none"}
+PALE: plotting.Style = {"color": plotting.tint(plotting.BLUE, 0.5)}
+HIT: plotting.Style = {"marker": 7, "color": plotting.VERMILION, "linestyle": "none", "clip_on": False}
+HIT |= {"label": "impact of the fit"}
+NOTE: plotting.Style = {"textcoords": "offset points", "fontsize": plotting.NOTE}
 
 
 @plotting.in_house_style
-def draw(found: Mapping[str, Fit], profiles: Mapping[str, Sequence[Profile]]) -> Figure:
-    """Three panels a record."""
-    height = 0.055 * len(found) + 0.005
-    figure, axes = plotting.new_figure(len(found), 3, width=plotting.PAGE, height=height, squeeze=False)
-    for i, ((name, one), row) in enumerate(zip(found.items(), axes, strict=True)):
-        _record(row[0], row[1], one)
-        _trade(row[2], one, profiles[name])
-        shown = "trade-off" if profiles[name] else "correlations"
-        for k, words in enumerate((f"record {name}", "residuals", shown)):
-            plotting.panel(row[k], 3 * i + k, words)
-    plotting.legend_below(figure, figure.axes, 5)
+def draw(one: Fit, rows: Sequence[Profile], values: Mapping[str, str], title: str = "") -> Figure:
+    """Four panels; `rows` are of profiles, the first of the one that is drawn, `values` printed estimates."""
+    figure, axes = plotting.new_figure(2, 2, width=plotting.PAGE, height=0.14)
+    words = "Record and fit", "Residuals", "90 % intervals", "Profile" if rows else "Correlations"
+    for k, axis in enumerate(axes.flat):
+        plotting.panel(axis, k, words[k])
+    _record(axes[0, 0], axes[0, 1], one)
+    axes[1, 0].set_axis_off()
+    values = {name: value.replace("^1.5", "$^{1.5}$") for name, value in values.items()}
+    _intervals(axes[1, 0].inset_axes([0.5, 0.0, 0.5, 1.0]), one, values)
+    if rows:
+        _profile(axes[1, 1], one, [row for row in rows if row.parameter == rows[0].parameter])
+    else:
+        _correlations(axes[1, 1], one)
+    parts = [*axes[0], *axes[0, 1].child_axes, *axes[1, 0].child_axes, *figure.axes]
+    plotting.legend_below(figure, parts, 4)
+    figure.suptitle(title)
     return figure
 
 
-def _record(left: Any, middle: Any, one: Fit) -> None:
-    """Record and fit, and residuals below the same axis."""
-    kind, rows = one.record.kind, one.record.rows
-    table = kind == "transitions"
-    unit, fine, words = (1e2, 1e2, "end of $p_m$") if table else (1e3, 1e6, "tip")
-    seen, residuals = one.record.observed[:, 0], one.residuals[:, 0]
-    fitted = seen - residuals
-    if kind == "motion":
-        place, across = 1e3 * rows[:, 0], ("time", "ms")
-        left.plot(place, unit * seen, **DOTS, color=plotting.BLUE, label="record")
-        left.plot(place, unit * fitted, color=plotting.BLACK, linewidth=0.6, label="fit")
-        left.set_xlim(place[0], place[0] + 1e3 * SHOWN * one.oscillator.period)
+def _record(left: Axes, right: Axes, one: Fit) -> None:
+    """The first rows and their fit, then all residuals and the deviation of the noise."""
+    record, prediction, place = one.record, one.problem.prediction, one.record.rows[:, 0]
+    words, scale, unit, fine, small = READINGS[record.columns[-1 if record.kind != "strobe" else 0]]
+    off, across, few = fine * one.residuals[:, 0], ("drive frequency", "Hz"), record.kind == "transitions"
+    noise = record.units(one.problem.noise)[:, 0] * fine * one.noise / one.problem.noise
+    if isinstance(prediction, Displacement):
+        second, prefix = prefixed(place[-1] - place[0], "s")
+        _motion(left, one, prediction, scale, second)
+        place, across = place / second, ("time", prefix)
     else:
-        place, across, errors = np.arange(len(seen), dtype=float), ("strobe", "1"), None
-        if table:
-            place, across = rows[:, 0], ("drive frequency", "Hz")
-            errors = unit * one.record.units(one.noise)[:, 0]
-        left.errorbar(place, unit * seen, errors, **plotting.points(1))[0].set_label("record")
-        left.plot(place, unit * fitted, **FITTED)
-    middle.plot(place, fine * residuals, **DOTS, color=plotting.BLUE)
-    middle.axhline(0.0, **plotting.GUIDE)
-    for axis in (left, middle):
+        if record.kind == "strobe":
+            place, across = np.arange(1.0, len(place) + 1.0), ("strobe", "1")
+        shown, errors = slice(STROBES * prediction.m or None), scale / fine * noise if few else None
+        seen, off_ = scale * record.observed[shown, 0], scale / fine * off[shown]
+        left.errorbar(place[shown], seen, errors, marker="o", **BLUE, elinewidth=0.7, label="record")
+        left.plot(place[shown], seen - off_, "k_", markersize=7.0, label="fit")
+        left.xaxis.set_major_locator(MaxNLocator(6, integer=not few))
+    right.plot(place, off, "o", ms=1.3 if off.size > FEW else 3.0, mew=0.0, rasterized=True, **PALE)
+    for way in (-1.0, 1.0):
+        right.plot(place, way * noise, "k--", linewidth=0.7, label="±1 standard deviation of the noise")
+    left.margins(0.02, 0.15)
+    for axis, name, its in ((left, words, unit), (right, "record less fit", small)):
+        plotting.label(axis.yaxis, name, its)
         plotting.label(axis.xaxis, *across)
-    left.margins(y=0.1)
-    plotting.label(left.yaxis, words, "%" if table else "mm")
-    plotting.label(middle.yaxis, "residual", "%" if table else "\u00b5m")
+    if not few:
+        most, bins = 1.1 * max(float(np.abs(off).max()), 3.0 * noise[0]), min(8 + off.size // 50, 40)
+        side, at = right.inset_axes((1.02, 0.0, 0.18, 1.0), sharey=right), np.linspace(-most, most, FINE)
+        side.hist(off, bins, range=(-most, most), density=True, orientation="horizontal", **PALE)
+        side.plot(norm.pdf(at, 0.0, noise[0]), at, "k", linewidth=0.8, label="normal curve")
+        side.tick_params(left=False, labelleft=False, bottom=False, labelbottom=False)
+        right.set_ylim(-most, most)
 
 
-def _trade(axis: Any, one: Fit, rows: Sequence[Profile]) -> None:
-    """The profile of the most correlated pair, else all correlations."""
-    if not rows:
-        image = axis.imshow(one.correlations, vmin=-1.0, vmax=1.0, cmap="RdBu", aspect="auto")
-        axis.figure.colorbar(image, cax=axis.inset_axes([1.04, 0.0, 0.06, 1.0]), ticks=[-1.0, 0.0, 1.0])
-        names = [name.replace("_", "\n") for name in one.names]
-        axis.set_xticks(range(len(names)), names, rotation=90)
-        axis.set_yticks(range(len(names)), names)
-        for (i, j), number in np.ndenumerate(one.correlations):
-            colour = "white" if abs(number) > DARK else "black"
-            axis.text(j, i, minus(f"{number:.2f}"), ha="center", va="center", color=colour, fontsize=SMALL)
-        return
-    own = [row for row in rows if row.parameter == rows[0].parameter]
-    other, known = axis.twinx(), parameters_of(one.oscillator)
+def _motion(axis: Axes, one: Fit, prediction: Displacement, scale: float, second: float) -> None:
+    """Rows as open dots, the fit at finely spaced times, its impacts, and the stop."""
+    (oscillator, extra), (times, seen) = one.problem.at(one.unknowns), one.record.rows.T
+    lasting, count = prediction.m * oscillator.period or math.inf, ORBITS * prediction.m or SHOWN
+    span = min(count * oscillator.period, times[-1] - times[0])
+    fine = prediction.between(times[0] + np.linspace(0.0, span, FINE * count))
+    run, place = fine.run(oscillator, extra)
+    hits = (run.impacts.start - run.time[place[0]]) % lasting
+    shown = np.flatnonzero(times <= times[0] + span)
+    every = math.ceil(shown.size / DOTS)
+    look = BLUE | {"label": f"record, 1 row in {every}" if every > 1 else "record", "zorder": 3}
+    axis.plot(times[shown[::every]] / second, scale * seen[shown[::every]], "o", ms=2.4, mew=0.5, **look)
+    axis.plot(fine.times / second, scale * fine.values(oscillator, extra)[:, 0], "k", lw=0.8, label="fit")
+    for hit in [hit for hit in (*hits, *(hits + lasting)) if hit <= span]:
+        axis.plot((times[0] + hit) / second, 1.0, transform=axis.get_xaxis_transform(), **HIT)
+    if one.record.columns[1] == "x_m":
+        sensor, across = prediction.reading(extra), axis.get_yaxis_transform()
+        gap = scale * (sensor["offset"] + sensor["scale"] * oscillator.stop.gap)
+        axis.axhline(gap, **plotting.GUIDE)
+        axis.annotate("stop", (1.0, gap), (0.0, 1.5), xycoords=across, ha="right", **NOTE)
 
-    def shown(along: Any, name: str, values: Sequence[float]) -> NDArray[np.float64]:
-        unit = known[name].unit
-        scale, unit = (1e3, f"m{unit}") if unit in ("s", "m") else (1.0, unit)
-        plotting.label(along, name.replace("_", " "), unit)
-        return scale * np.array(values)
 
-    value = shown(axis.xaxis, own[0].parameter, [row.value for row in own])
-    lines = axis.plot(value, [row.depth for row in own], **plotting.series(1), label="rise of $\\chi^2$")
-    axis.axhline(DEPTH, **plotting.GUIDE, label="90 % interval")
-    axis.locator_params(axis="x", nbins=3)
-    axis.margins(y=0.1)
-    plotting.label(axis.yaxis, "rise of $\\chi^2$")
-    fitted = shown(other.yaxis, own[0].other, [row.other_value for row in own])
-    lines += other.plot(value, fitted, **plotting.series(2), label="other parameter, fitted again")
-    for side, line in zip((axis, other), lines, strict=True):
-        side.tick_params(axis="y", colors=line.get_color())
-        side.yaxis.label.set_color(line.get_color())
+def _intervals(axis: Axes, one: Fit, values: Mapping[str, str]) -> None:
+    """A row a parameter: its name and printed value, and the 90 % interval about the estimate."""
+    sizes = dict(zip(one.names, np.where(one.estimate, np.abs(one.estimate), one.errors), strict=True))
+    sizes |= {"phase": 2.0 * math.pi, "offset": one.oscillator.stop.gap}
+    names = [f"{name.replace('_', ' ')}{OVER.get(name, '')}  {values[name]}" for name in one.names]
+    ends = 100.0 * (one.intervals().T - one.estimate).T / np.array([[sizes[name]] for name in one.names])
+    half = np.abs(np.where(np.isfinite(ends), ends, 0.0)).max(axis=1)
+    widest, least, row = half.max(), half[half > 0.0].min(), np.arange(half.size)
+    limit = 1.2 * widest
+    if widest > MANY * least:
+        first, last = math.floor(math.log10(least)), math.ceil(math.log10(widest))
+        limit, decades = 10.0**last, 10.0 ** np.arange(first, last + 1)
+        axis.set_xscale("symlog", linthresh=decades[0])
+        shown = decades[[-1, (last - first - 1) // 2][: 1 + (last - first >= APART)]]
+        axis.set_xticks(ticks := [*-shown, 0.0, *shown], map(written, ticks))
+        axis.set_xticks([*-decades, *decades], minor=True)
+    axis.hlines(row, *np.clip(ends, -limit, limit).T, color=plotting.BLUE, linewidth=1.6)
+    for i, k in np.argwhere(~np.isfinite(ends)):
+        axis.plot([-limit, limit][k], i, "<>"[k], color=plotting.BLUE, clip_on=False)
+    axis.plot(0.0 * row, row, "ko", markersize=2.6, label="estimate")
+    axis.axvline(0.0, **plotting.GUIDE)
+    axis.set(xlim=(-limit, limit), ylim=(row.size - 0.4, -0.6))
+    axis.set_yticks(row, names, fontsize=min(plotting.NOTE, 56.0 / row.size))
+    plotting.label(axis.xaxis, "distance from estimate", "% of it")
+
+
+def _profile(axis: Axes, one: Fit, own: Sequence[Profile]) -> None:
+    """The rise of chi^2 along a parameter, and the one that trades off with it, as fitted again."""
+    other, known, names = axis.twinx(), parameters_of(one.oscillator), (own[0].parameter, own[0].other)
+    held, first = np.unique([row.value for row in own], return_index=True)
+    rise, values = np.array([(max(own[i].depth, 0.0), own[i].other_value) for i in first]).T
+    scale, unit = prefixed(float(np.abs(held).max()), known[names[0]].unit)
+    size, another = prefixed(float(np.abs(values).max()), known[names[1]].unit)
+    at, root = np.linspace(held[0], held[-1], FINE), np.sign(held - held[rise.argmin()]) * np.sqrt(rise)
+    curves = PchipInterpolator(held, root)(at) ** 2, PchipInterpolator(held, values / size)(at)
+    for k, (side, points, words) in enumerate(((axis, rise, RISE), (other, values / size, AGAIN))):
+        look = plotting.series(k + 1)
+        side.plot(at / scale, curves[k], color=look["color"], linestyle=look["linestyle"])
+        side.plot(held / scale, points, **look | {"linestyle": "none"}, label=words)
+        side.tick_params(axis="y", colors=look["color"])
+        side.yaxis.label.set_color(look["color"])
+        side.yaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 2.5, 5, 10], min_n_ticks=3))
+        side.margins(y=0.12)
+    axis.axhline(one.reach**2, **plotting.GUIDE)
+    axis.annotate("90 %", (at.mean() / scale, one.reach**2), (0.0, 1.5), ha="center", **NOTE)
+    axis.xaxis.set_major_locator(MaxNLocator(3, min_n_ticks=3))
     other.spines["right"].set_visible(True)
+    plotting.label(axis.xaxis, names[0].replace("_", " "), unit)
+    plotting.label(axis.yaxis, RISE)
+    plotting.label(other.yaxis, names[1].replace("_", " "), another.replace("^1.5", "$^{1.5}$"))
+
+
+def _correlations(axis: Axes, one: Fit) -> None:
+    """A triangle: a row has the name of one parameter, the head of a column that of the other."""
+    names, count = [name.replace("_", " ") for name in one.names], len(one.names)
+    shown = np.where(np.tri(count, k=-1) > 0.0, one.correlations, np.nan)
+    image = axis.imshow(shown, vmin=-1.0, vmax=1.0, cmap="RdBu", aspect="auto")
+    bar = axis.figure.colorbar(image, cax=axis.inset_axes((1.04, 0.0, 0.05, 1.0)), ticks=[-1.0, 0.0, 1.0])
+    plotting.label(bar.ax.yaxis, "correlation")
+    side = max(count, CELLS) - 0.5
+    axis.set(xlim=(-0.5, side), ylim=(side, -0.5), xticks=[], yticks=range(1, count), yticklabels=names[1:])
+    axis.tick_params(left=False)
+    axis.set_frame_on(False)
+    for i, j in combinations(range(count), 2):
+        look: plotting.Style = {"color": "white" if abs(shown[j, i]) > DARK else "black", "fontsize": SMALL}
+        axis.text(i, j, minus(f"{shown[j, i]:.2f}"), ha="center", va="center", **look)
+    for j, name in enumerate(names[:-1]):
+        axis.text(j - 0.4, j, name, va="center", fontsize=plotting.NOTE)

@@ -130,7 +130,9 @@ def traded(found: Fit, quick: bool) -> list[Profile]:
     rows = list[Profile]()
     for i in kept[: 1 if quick else None]:
         walk = found.walk(found.names[i])
-        points = [point for way in (-1.0, 1.0) for point in walk.side(way * found.reach)[0]]
+        sides = [(reach, walk.side(reach)[0]) for reach in (-found.reach, found.reach)]
+        points = [point for _, side in sides for point in side]
+        points += [p for reach, side in sides if len(side) == 1 for p in walk.side(0.5 * reach)[0]]
         rows += rows_of(walk, points, found.names[partners[i]])
     return rows
 
@@ -171,7 +173,10 @@ def report(run: Run, found: Mapping[str, Fit]) -> dict[str, Any]:
     run.table("profile", points, "Likelihood where two parameters trade off.", of=Profile, show=())
     holds = "Reading less fit of each row of a record, in the units of its columns: m, m/s, or an excess."
     run.arrays("residuals", holds, **{f"residuals_{name}": one.residuals for name, one in found.items()})
-    run.figure("identify", figure.draw(found, profiles), figure.CAPTION)
+    for name, one in found.items():
+        values = {row.parameter: row.value for row in estimates if row.record == name}
+        stem, title = (f"identify_{name}", f"Record: {name}") if len(found) > 1 else ("identify", "")
+        run.figure(stem, figure.draw(one, profiles[name], values, title), figure.CAPTION)
     for name, note in [(name, note) for name, one in found.items() for note in notes_of(one)]:
         run.say(f"{name}: {note}")
     own = [one for one in estimates if one.estimate and one.parameter not in UNITS]

@@ -10,7 +10,7 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
-from matplotlib.ticker import FuncFormatter, LogLocator
+from matplotlib.ticker import FuncFormatter
 
 from studies import letter
 from studies.measurement.next_measurement import model
@@ -20,7 +20,7 @@ from studies.shell.digits import written
 from studies.shell.run import Run
 
 BEST = ("frequency_hz", "excess", "m", "errors", "together")  # columns on the terminal
-PLANE = "Standard errors over frequency and excess by the best orbit at each place."
+PLANE = "Standard errors by the best orbit at each frequency and excess; the best places are numbered."
 
 ERRORS = {
     "free_period": ("free period", "standard error (µs)", 1e6),
@@ -79,10 +79,13 @@ def draw_plane(found: Sequence[Measurement], plan: Plan, letters: bool) -> Figur
             marks["orbit that does not outlive its errors"] = Patch(color=matplotlib.colormaps["Greys"](0.25))
         if np.isfinite(seen).any():
             mesh = axis.pcolormesh(*cells, seen, cmap="viridis_r", norm=LogNorm())
-            ticks = LogLocator(subs=(1, 3))
+            ends = float(np.nanmin(seen)), float(np.nanmax(seen))
+            ticks = np.outer(10.0 ** np.arange(-15.0, 15.0), (1.0, 3.0)).ravel()
+            ticks = ticks[(ends[0] <= ticks) & (ticks <= ends[1])]
+            ticks = ticks if ticks.size > 2 else np.unique(np.geomspace(*ends, 3))
             bar = figure.colorbar(mesh, ax=axis, location="bottom", label=words, ticks=ticks)
             bar.minorticks_off()
-            bar.formatter = FuncFormatter(lambda tick, _: written(tick))
+            bar.formatter = FuncFormatter(lambda tick, _: written(tick, 3))
         if letters:
             at = list(letter.PERIODS), [1e-3] * len(letter.PERIODS)
             (marks["letter, at an excess of 0.001"],) = axis.plot(*at, **plotting.LETTER_POINTS)
@@ -91,7 +94,7 @@ def draw_plane(found: Sequence[Measurement], plan: Plan, letters: bool) -> Figur
             place = {"ha": "center", "va": "center", "fontsize": plotting.NOTE - 1.5, "bbox": circle}
             axis.annotate(str(number), (one.frequency_hz, one.excess), **place)
             ring = Line2D([], [], marker="o", mfc="white", mec="black", ls="none")
-            marks["the best places, 1 the best"] = ring
+            marks["numbered: the best places, 1 the best"] = ring
         axis.set_yscale("symlog", linthresh=model.STABLE)
         axis.minorticks_off()
         axis.set_yticks(levels := (-1e-2, -1e-3, 0.0, 1e-3, 1e-2), map(written, levels))

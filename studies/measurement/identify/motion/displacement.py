@@ -148,6 +148,10 @@ class Displacement(Prediction):
         record = clear_of(self.whole, hits.start - away, hits.end - away, self.m * oscillator.period, width)
         return None if np.array_equal(record.rows, self.record.rows) else self._of(record, record.rows[:, 0])
 
+    def between(self, times: Array) -> Self:
+        """The prediction at other times, the first row's the first."""
+        return self._of(self.record, times)
+
     def reading(self, extra: Array) -> dict[str, float]:
         """The numbers of the sensor."""
         states = extra.size - len(self.sensor)
