@@ -16,7 +16,8 @@ from studies.measurement.identify.fit.profiles import rows_of
 from studies.measurement.identify.fit.search import fit
 from studies.measurement.identify.motion.displacement import SENSOR, UNITS
 from studies.measurement.identify.motion.starts import predictions_of, strobe_period
-from studies.measurement.identify.record.records import NoAnswer, read_record, synthetic
+from studies.measurement.identify.record.reading import read_record
+from studies.measurement.identify.record.records import NoAnswer, synthetic
 from studies.measurement.identify.report import Estimate
 from studies.physics.parameters import ALIASES, fitted_scene, parameters_of, with_values
 from studies.shell.digits import written
