@@ -17,6 +17,7 @@ import numpy as np
 from beam import InvalidValue
 from studies.shell.programs import needs
 from studies.shell.tables.text import Array, Table, read_text
+from studies.shell.tables.units import split
 
 Channels = Mapping[str, tuple[Array, str]]  # name -> values, unit
 
@@ -42,7 +43,7 @@ def _table(channels: Channels, recognised: str, step: float | None = None, start
     rows[~np.isfinite(rows)] = np.nan
     lines = np.arange(1, longest + 1)
     lost = {(int(i) + 1, int(k)): "nan" for i, k in np.argwhere(np.isnan(rows))[:1000]}
-    units = tuple(unit for _, unit in kept.values())
+    units = tuple(unit or split(name)[1] for name, (_, unit) in kept.items())
     names = tuple(kept)
     return Table(
         names=names,

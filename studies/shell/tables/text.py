@@ -25,6 +25,7 @@ Array = NDArray[np.float64]
 MARKS = {"\t": "tabs", ";": "semicolons", ",": "commas", " ": "blanks"}
 LOOKED_AT, WHOLE, SEEN, MOST = 400, 3, 3, 1000
 """Lines to choose the separator by, whole rows that begin a table, lines shown, cells kept as text."""
+LEAST = 0.25  # share of numbers in a column
 _STAMP = re.compile(r"(?:(\d{4}-\d\d-\d\d)[T ])?(\d\d?:\d\d:\d\d)(?:[.,](\d{1,9}))?(Z|[+-]\d\d:?\d\d)?$")
 
 
@@ -124,8 +125,12 @@ def read_text(text: str, encoding: str, source: object) -> Table:
     values = np.array([(row + [math.nan] * width)[:width] for row in rows], dtype=float)
     values[~np.isfinite(values)] = math.nan
     isnumber = np.isfinite(values)
-    columns = np.flatnonzero(np.sum(isnumber[len(rows) // 2 :], axis=0) > 0.5 * (len(rows) - len(rows) // 2))
+    columns = np.flatnonzero(
+        np.sum(isnumber[len(rows) // 2 :], axis=0) > LEAST * (len(rows) - len(rows) // 2)
+    )
     begin = _begin(isnumber, raw, columns, found)
+    if begin and (again := [i for i in range(begin - 1) if lines[i][1] == lines[begin - 1][1]]):
+        begin = again[0] + 1  # a heading that is repeated
     if not columns.size or begin is None:
         seen = " | ".join(line.strip()[:40] for _, line in lines[:SEEN])
         raise InvalidValue(
@@ -166,11 +171,9 @@ def _begin(
     lone = [i for i in others if i not in texts and not form.beside]
     for i in range(min(len(raw), 300) if lone else 0):
         whole[i] &= not any(len(raw[i]) > k and raw[i][k].strip() for k in lone)
-    need = min(WHOLE, int(np.sum(whole)))
-    runs = (
-        np.flatnonzero(np.convolve(whole, np.ones(max(need, 1)), "valid") >= need) if need else np.array([])
-    )
-    if not runs.size:
+    counts = (np.convolve(whole, np.ones(need), "valid") == need for need in range(WHOLE, 0, -1))
+    runs = next((found for found in map(np.flatnonzero, counts) if found.size), None)
+    if runs is None:
         return None
     begin = int(runs[0])
     while (

@@ -29,8 +29,18 @@ from studies.shell.tables.units import COUNT_WORDS, UNITS, is_time, plain, split
 FEWEST: dict[Kind, int] = {"strobe": 4, "motion": 40, "transitions": 1}  # rows that each kind needs
 LARGEST, LATEST = 1e6, 1e15  # largest size of a number, in the unit of its column, and of a time [s]
 FAR = 100.0  # first stamp over the span of the record, above which times begin at the first row
+UNIT = re.compile(r"([-+]?[\d.]+(?:e[-+]?\d+)?)?\s*(\S+)", re.I)
 KHZ = re.compile(r"([\d.]+(?:e[+-]?\d+)?)\s*(k?)", re.I)
 RATES = re.compile(r"rate|sampling|abtast|\bfs\b|\bodr\b", re.I)  # names of notes that say a rate
+
+
+def _float(text: str | None) -> float:
+    """The number in a text; 1 for an empty one, 0 for words."""
+    try:
+        number = float(text or 1.0)
+    except ValueError:
+        return 0.0
+    return number if math.isfinite(number) else 0.0
 
 
 @dataclass(frozen=True)
@@ -64,12 +74,12 @@ class Source:
     def chosen(self) -> tuple[int | None, int]:
         """The columns of the time (None: there is none) and of the channel."""
         table, width = self.table, len(self.table.names)
-        if self.columns is not None:
-            *time, value = (self.place(name) for name in self.columns.split(","))
-            if len(time) > 1 or value in time:
-                raise InvalidValue(f"columns is {self.columns!r}; it must be TIME,VALUE or one VALUE")
-            return (time[0] if time else None), value
         times = [i for i in range(width) if is_time(table.names[i], table.units[i])]
+        if self.columns is not None:
+            *given, value = (self.place(name) for name in self.columns.split(","))
+            if len(given) > 1 or value in given:
+                raise InvalidValue(f"columns is {self.columns!r}; it must be TIME,VALUE or one VALUE")
+            return next(iter([*given, *times]), None), value
         counts = [i for i in range(width) if i not in times and self.counted(i)]
         counts = counts if width > len(times) + len(counts) else []  # x alone is a channel
         if not table.headed and not times and width > 1 and np.all(np.diff(table.rows[:50, 0]) > 0.0):
@@ -90,12 +100,15 @@ class Source:
         dimension, size = UNITS.get(plain(written), ("", 1.0))
         if self.unit is not None:
             recorded, equals, per = self.unit.rpartition("=")
-            found = re.fullmatch(r"\s*([-+]?[\d.]+(?:e[-+]?\d+)?)?\s*(\S+)\s*", per, re.I)
-            known = UNITS.get(plain(found[2]), ("", 1.0)) if found else ("", 1.0)
-            if found is None or known[0] not in CHANNELS.values() or (equals and not recorded.strip()):
+            found = UNIT.fullmatch(per.strip())
+            known, many = (
+                UNITS.get(plain(found[2]), ("", 1.0)) if found else ("", 1.0),
+                _float(found[1] if found else ""),
+            )
+            if known[0] not in CHANNELS.values() or (equals and not recorded.strip()) or not many:
                 raise InvalidValue(f"unit is {self.unit!r}; it must be such as mm, m/s, g or V=5e-3 m")
-            dimension, size = known[0], known[1] * float(found[1] or 1.0)
-            written = f"{self.unit.strip()}"
+            dimension, size = known[0], known[1] * many
+            written = self.unit.strip()
         if dimension not in CHANNELS.values():
             what = f"the unit {written!r}" if written else "no unit"
             example = (
@@ -107,9 +120,10 @@ class Source:
         return next(column for column, unit in CHANNELS.items() if unit == dimension), size, written
 
     def counted(self, i: int) -> bool:
-        """Whether column i counts samples."""
-        name, unit = split(self.table.names[i])[0], self.table.units[i]
-        return name.lower() in COUNT_WORDS and not is_time(name, unit)
+        """Whether column i counts samples: by its name, without a unit, in steps of one."""
+        unknown = plain(self.table.units[i]) not in UNITS
+        named = unknown and split(self.table.names[i])[0].lower() in COUNT_WORDS
+        return named and float(np.nanmedian(np.diff(self.table.rows[:, i]))) == 1.0
 
     def times(self, i: int | None) -> tuple[Array, str]:
         """The times of all rows [s], and in words where they are from."""
@@ -143,10 +157,7 @@ class Source:
         """The number above zero in a note, None if there is no such note."""
         if name not in self.table.notes:
             return None
-        try:
-            number = float(self.table.notes[name])
-        except ValueError:
-            number = math.nan
+        number = _float(self.table.notes[name])
         if not 0.0 < number <= LARGEST:
             valid = f"it must be a number above zero and at most {LARGEST:g}"
             raise InvalidValue(f"the note {name} of {self.path} is {self.table.notes[name][:40]!r}; {valid}")
