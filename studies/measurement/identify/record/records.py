@@ -2,8 +2,8 @@
 
 x is the displacement of the tip relative to the base, and the base moves as Z sin(2 pi f t). Strobe points
 begin at a strobe, a displacement at any time. The first two kinds take their drive from the lines
-`# frequency_hz = 22.2` and `# amplitude_m = 0.002`. The noise is that of the read-out, independent from row to
-row: of x one sigma [m], of v 2 pi f sigma; of an excess the error in the table or the letter's amplitude
+`# frequency_hz = 22.2` and `# amplitude_m = 0.002`. The noise is that of the read-out, independent from row
+to row: of x one sigma [m], of v 2 pi f sigma; of an excess the error in the table or the letter's amplitude
 stability.
 """
 
