@@ -34,8 +34,8 @@ class Table:
     """A table as it was found; `rows` of shape (n_rows, n_columns) are NaN where a cell is no finite number.
 
     `names` are headings as written, `units` as well, "" if none; `lines` are the lines of the rows in the
-    file, `lost` texts of the first cells that are no numbers by (line, column). `step` and `start` [s] are None and 0 if
-    the file does not state them; `headed` is False if it has no heading.
+    file, `lost` texts of the first cells that are no numbers by (line, column). `step` and `start` [s] are
+    None and 0 if the file does not state them; `headed` is False if it has no heading.
     """
 
     names: tuple[str, ...]

@@ -200,13 +200,12 @@ class Source:
             kept, steps = kept[np.append(True, steps > 0.0)], steps[steps > 0.0]
         rate = 1.0 / float(np.median(steps)) if steps.size else math.nan
         name = split(self.table.names[value])[0]
-        said = f"read as {self.table.recognised}: {name!r} in {written} {over}, {len(kept)} rows at {rate:.6g} Hz"
-        own = (self.columns, self.unit, self.rate) == (None,) * 3 and [*self.table.names] == [
-            "time_s",
-            column,
-        ]
+        said = f"read as {self.table.recognised}: {name!r} in {written} {over}, {len(kept)} rows"
+        said += f" at {rate:.6g} Hz"
+        if self.columns is self.unit is self.rate is None and self.table.names == ("time_s", column):
+            said = ""
         columns = ("time_s", column)
-        return Record(columns=columns, rows=rows[kept], notes=tuple(notes), reading="" if own else said)
+        return Record(columns=columns, rows=rows[kept], notes=tuple(notes), reading=said)
 
 
 def read_record(
