@@ -169,7 +169,7 @@ REFUSED = {
     "time_s,x_m\n" + "".join(f"{i},0\n" for i in range(99)): "0 m in all rows",
     "x_m\n1\n": "1 rows",
     "# frequency_hz = fast\nx_m\n1\n": "note frequency_hz",
-    "x_m,v_m_per_s\n1\n": "1 rows",
+    "x_m,v_m_per_s\n1,2\n": "1 rows",
     "frequency_hz,period,excess\n22.2,5.5,0\n": "whole period",
     "frequency_hz,period,excess,error\n22.2,5,0,0\n": "error above 0",
     wave(300).replace("0.0205,", "0.0199,"): "0.0199 s in line 43; times must rise",
