@@ -172,7 +172,7 @@ REFUSED = {
     "x_m,v_m_per_s\n1,2\n": "1 rows",
     "frequency_hz,period,excess\n22.2,5.5,0\n": "whole period",
     "frequency_hz,period,excess,error\n22.2,5,0,0\n": "error above 0",
-    wave(300).replace("0.0205,", "0.0199,"): "0.0199 s in line 43; times must rise",
+    wave(300).replace("0.0205,", "0.0199,"): "0.0199 s in line 45; times must rise",
     wave(30): "30 rows",
     wave(2000): "no impact",
     wave(80): "80 rows of 0.89 drive periods; it must have at least 3",

@@ -123,7 +123,8 @@ class Source:
         """Whether column i counts samples: by its name, without a unit, in steps of one."""
         unknown = plain(self.table.units[i]) not in UNITS
         named = unknown and split(self.table.names[i])[0].lower() in COUNT_WORDS
-        return named and float(np.nanmedian(np.diff(self.table.rows[:, i]))) == 1.0
+        values = self.table.rows[np.isfinite(self.table.rows[:, i]), i]
+        return named and values.size > 1 and float(np.median(np.diff(values))) == 1.0
 
     def times(self, i: int | None) -> tuple[Array, str]:
         """The times of all rows [s], and in words where they are from."""
