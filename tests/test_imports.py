@@ -32,7 +32,8 @@ FLOORS = {
     "steady_response oscillator state tables plots impacts trajectory touch engine integrators simulation "
     "sensitivity one_mode maps virtual_motion collision_numbers collision orbits.families orbits.branches "
     "orbits.shooting orbits.observation orbits.__init__ __init__ warm_up",
-    "studies": "__init__ letter shell.files shell.programs shell.scene shell physics shell.study "
+    "studies": "__init__ letter shell.files shell.programs shell.tables.units shell.tables.formats "
+    "shell.tables.text shell.tables.binary shell.scene shell physics shell.study "
     "shell.every_study experiment spring methods measurement.next_measurement "
     "measurement.identify.record measurement.identify.motion measurement.identify.fit measurement "
     "explore pictures tour report __main__",

@@ -18,7 +18,8 @@ from studies.measurement.identify.fit.profiles import rows_of
 from studies.measurement.identify.fit.search import fit
 from studies.measurement.identify.motion.displacement import SENSOR, UNITS
 from studies.measurement.identify.motion.starts import predictions_of, strobe_period
-from studies.measurement.identify.record.records import NoAnswer, read_record, synthetic
+from studies.measurement.identify.record.reading import read_record
+from studies.measurement.identify.record.records import NoAnswer, synthetic
 from studies.measurement.identify.report import Estimate
 from studies.physics.parameters import ALIASES, fitted_scene, parameters_of, with_values
 from studies.shell.digits import written
@@ -171,18 +172,17 @@ def wave(rows, step=5e-4, height=0.01):
 
 
 REFUSED = {
-    "": "is empty; its heading must be",
-    "hello": "heading 'hello'",
-    "x_m\n1\nnan\n": "row 2 .* 'nan'",
-    "x_m\n1\nabc\n": "row 2 .* 'abc'",
-    "x_m\n1\n1e300\n": r"x_m in row 2 .* '1e300'; .* at most 1e\+06",
+    "": "is empty; give a table",
+    "hello": "first lines are 'hello'",
+    "x_m\n1\nnan\n": "line 3, 'nan', which is no number",
+    "x_m\n1\n1e300\n": r"x_m in row 2 .* 1e\+300; .* at most 1e\+06",
     "time_s,x_m\n" + "".join(f"{i},0\n" for i in range(99)): "0 m in all rows",
     "x_m\n1\n": "1 rows",
     "# frequency_hz = fast\nx_m\n1\n": "note frequency_hz",
-    "x_m,v_m_per_s\n1\n": "1 cells",
+    "x_m,v_m_per_s\n1,2\n": "1 rows",
     "frequency_hz,period,excess\n22.2,5.5,0\n": "whole period",
     "frequency_hz,period,excess,error\n22.2,5,0,0\n": "error above 0",
-    wave(300).replace("0.0205,", "0.0199,"): "0.0199 s in row 42; times must rise",
+    wave(300).replace("0.0205,", "0.0199,"): "0.0199 s in line 45; times must rise",
     wave(30): "30 rows",
     wave(2000): "no impact",
     wave(80): "80 rows of 0.89 drive periods; it must have at least 3",

@@ -60,7 +60,8 @@ from studies.measurement.identify.fit.diagnosis import contradictions, wanders
 from studies.measurement.identify.fit.result import Fit
 from studies.measurement.identify.fit.search import fit as fitted
 from studies.measurement.identify.motion.displacement import SENSOR
-from studies.measurement.identify.record.records import Kind, NoAnswer, Record, read_record, synthetic
+from studies.measurement.identify.record.reading import read_record
+from studies.measurement.identify.record.records import Kind, NoAnswer, Record, synthetic
 from studies.measurement.identify.report import as_scene, report, without_errors
 from studies.measurement.next_measurement.figure import tabulated
 from studies.measurement.next_measurement.model import EXCESSES, FREQUENCIES_HZ, THIN, Measurement, Plan
@@ -134,12 +135,24 @@ def identify(
     delay_ms: Annotated[
         float | None, "two_parameters: delay, or start of its fit (default: T/136)", Within(0, 1e9, "ms")
     ] = None,
+    columns: Annotated[
+        str | None, "TIME,VALUE of the record by name or number; VALUE if it has no time"
+    ] = None,
+    unit: Annotated[
+        str | None, "unit of the channel (mm, m/s, g), or what one recorded unit is: V=5e-3m, 1=2.5e-6m"
+    ] = None,
+    rate: Annotated[
+        float | None, "sampling rate of a record without times", Within(0, 1e9, "Hz", open=True)
+    ] = None,
     next: Annotated[tuple[str, ...], "parameters of the next measurement (example: T tau delay)"] = (),
 ) -> Mapping[str, object]:
     """Read or make, fit, report and draw."""
     harmonic(scene)
     if drive is not None and record is None:
         raise InvalidValue(f"drive is {drive[0]:g} Hz, {drive[1]:g} mm; it needs a record")
+    for name, value in (("columns", columns), ("unit", unit), ("rate", rate)):
+        if value is not None and record is None:
+            raise InvalidValue(f"{name} is {value}; it needs a record")
     if delay_ms is not None and description != "two_parameters" and record is not None:
         raise InvalidValue(f"delay_ms is {delay_ms:g} ms; only --description two_parameters has a delay")
     noise = None if noise_um is None else 1e-6 * noise_um
@@ -152,7 +165,8 @@ def identify(
     if description == "beam":
         scene = run.choose_modes(*least_modes(scene, {"fold": 0.05}))
     if record is not None:
-        read = read_record(record)
+        read = read_record(record, columns=columns, unit=unit, rate=rate)
+        run.say(read.reading)
         if drive is not None:
             read = replace(read, frequency=drive[0], amplitude=1e-3 * drive[1])
         if read.origin:

@@ -1,21 +1,19 @@
 """Measured records: three kinds, distinguished by their heading (`HEADINGS`), and synthetic ones.
 
 x is the displacement of the tip relative to the base, and the base moves as Z sin(2 pi f t). Strobe points
-begin at a strobe, a displacement at any time; stamps that begin far from zero count from the first row. Lines
-that begin with # are skipped, but the first two kinds take their drive from `# frequency_hz = 22.2` and
-`# amplitude_m = 0.002`. The noise is that of the read-out, independent from row to row: of x one sigma [m],
-of v 2 pi f sigma; of an excess the error in the table or the letter's amplitude stability.
+begin at a strobe, a displacement at any time. The first two kinds take their drive from the lines
+`# frequency_hz = 22.2` and `# amplitude_m = 0.002`. The noise is that of the read-out, independent from row
+to row: of x one sigma [m], of v 2 pi f sigma; of an excess the error in the table or the letter's amplitude
+stability.
 """
 
 import math
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
-from beam import InvalidValue
 from contact import ContactError, ImpactOscillator, StroboscopicMap, simulate
 from contact.orbits import Shooting, onset_orbit
 from studies import letter
@@ -37,9 +35,6 @@ CHANNELS = {"x_m": "m", "v_m_per_s": "m/s", "a_m_per_s2": "m/s²"}
 """What a motion may be recorded as: displacement, velocity or acceleration, with its SI unit."""
 SI = [*CHANNELS.values()]
 NOTES = ("frequency_hz", "amplitude_m")
-FEWEST = {"strobe": 4, "motion": 40, "transitions": 1}  # rows that each kind needs
-LARGEST, LATEST = 1e6, 1e15  # largest size of a number, in the unit of its column, and of a time [s]
-FAR = 100.0  # first stamp over the span of the record, above which times begin at the first row
 
 
 class NoAnswer(ContactError):
@@ -59,8 +54,8 @@ class Record:
     """A record: its `columns`, `rows` of shape (n_rows, n_columns), and the drive where it is known.
 
     `frequency` [Hz] and `amplitude` [m] are None where the record has no such line; `origin` [s] is what was
-    subtracted from its times; a sensor on the `ground` reads the motion of the base as well; `notes` say
-    what was changed of it for a fit.
+    subtracted from its times; a sensor on the `ground` reads the motion of the base as well; `notes` say what
+    was changed of it for a fit, `reading` how its file was understood.
     """
 
     columns: tuple[str, ...]
@@ -70,6 +65,7 @@ class Record:
     origin: float = 0.0
     ground: bool = False
     notes: tuple[str, ...] = ()
+    reading: str = ""
 
     @property
     def order(self) -> int:
@@ -113,72 +109,6 @@ class Record:
         lines = [f"# {name} = {value!r}" for name, value in notes if value is not None]
         cells = (",".join(f"{number:.10g}" for number in row) for row in self.rows)
         return "\n".join([*lines, ",".join(self.columns), *cells]) + "\n"
-
-
-def read_record(path: Path) -> Record:
-    """The record in a CSV file; ValueError with one sentence on what is wrong with it."""
-    try:
-        lines = [line.strip() for line in path.read_text(encoding="utf-8-sig").splitlines()]
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or "it is not text in UTF-8"
-        raise InvalidValue(f"the record {path} cannot be read: {reason}") from error
-    notes = dict[str, float]()
-    for line in lines:
-        name, equals, value = (part.strip() for part in line.lstrip("#").partition("="))
-        if line.startswith("#") and equals and name in NOTES:
-            notes[name] = _number(value, f"the note {name}", path)
-            if notes[name] <= 0.0:
-                raise InvalidValue(f"the note {name} of {path} is {notes[name]:g}; it must be above zero")
-    kept = [line for line in lines if line and not line.startswith("#")]
-    heading = tuple(word.strip().lower() for word in kept[0].split(",")) if kept else ()
-    if heading not in HEADINGS:
-        known = "; ".join(",".join(names) for names in HEADINGS)
-        found = f"has the heading {','.join(heading)[:60]!r}" if kept else "is empty"
-        raise InvalidValue(f"the record {path} {found}; its heading must be one of {known}")
-    numbers = list[float]()
-    for i, row in enumerate((line.split(",") for line in kept[1:]), 1):
-        if len(row) != len(heading):
-            raise InvalidValue(f"row {i} of {path} has {len(row)} cells, the heading {len(heading)}")
-        cells = zip(heading, row, strict=True)
-        numbers += [_number(cell, f"{name} in row {i}", path) for name, cell in cells]
-    rows = np.array(numbers, dtype=float).reshape(-1, len(heading))
-    record = Record(columns=heading, rows=rows, frequency=notes.get(NOTES[0]), amplitude=notes.get(NOTES[1]))
-    _check(record, path)
-    first, last = rows[[0, -1], 0]
-    if record.kind == "motion" and abs(first) > FAR * (last - first):
-        record = replace(record, rows=rows - [first, 0.0], origin=float(first))
-    return record
-
-
-def _number(text: str, place: str, path: Path) -> float:
-    try:
-        number = float(text)
-    except ValueError:
-        number = math.nan
-    if not abs(number) <= (most := LATEST if place.startswith("time_s") else LARGEST):
-        valid = f"it must be a number of at most {most:g} in size"
-        raise InvalidValue(f"{place} of {path} is {text.strip()[:40]!r}; {valid}")
-    return number
-
-
-def _check(record: Record, path: Path) -> None:
-    """ValueError for rows that no record of its kind has."""
-    rows, fewest = record.rows, FEWEST[record.kind]
-    if len(rows) < fewest:
-        raise InvalidValue(f"the record {path} has {len(rows)} rows; one of its kind needs {fewest} at least")
-    if record.kind == "motion":
-        falling = np.flatnonzero(np.diff(rows[:, 0]) <= 0.0)
-        if falling.size:
-            row = int(falling[0]) + 2
-            raise InvalidValue(f"time_s of {path} is {rows[row - 1, 0]:g} s in row {row}; times must rise")
-        if np.all(rows[:, 1] == rows[0, 1]):
-            raise NoAnswer(f"the displacement in {path} is {rows[0, 1]:g} m in all rows; a record must move")
-    if record.kind == "transitions":
-        wrong = (rows[:, 0] <= 0.0) | (rows[:, 1] % 1 != 0) | (rows[:, 1] < 1) | (rows[:, 2] <= -1.0)
-        wrong |= np.any(rows[:, 3:] <= 0.0, axis=1)
-        if np.any(wrong):
-            needs = "a frequency above 0 Hz, a whole period, an excess above -1 and an error above 0"
-            raise InvalidValue(f"row {int(np.argmax(wrong)) + 1} of {path} needs {needs}")
 
 
 def synthetic(

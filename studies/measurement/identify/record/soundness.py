@@ -119,7 +119,9 @@ def sound(record: Record, oscillator: ImpactOscillator) -> tuple[Record, ImpactO
     if given and (other := drive_found(times, x, given, record.order)):
         if abs(given / other[0] - 1.0) > OFF:
             raise InvalidValue(other[1])
-        record = replace(record, frequency=other[0], notes=(f"{other[1]}, where the fit begins",))
+        record = replace(
+            record, frequency=other[0], notes=(*record.notes, f"{other[1]}, where the fit begins")
+        )
         oscillator = with_values(oscillator, {"frequency": other[0]})
     if (rows := times.size) > MOST:
         dense = float(rows / ((times[-1] - times[0]) * (record.frequency or oscillator.driven.frequency)))
