@@ -68,7 +68,7 @@ def _record(left: Axes, right: Axes, one: Fit) -> None:
     words, scale, unit, fine, small = READINGS[record.columns[-1 if record.kind != "strobe" else 0]]
     off, across, few = fine * one.residuals[:, 0], ("drive frequency", "Hz"), record.kind == "transitions"
     noise = record.units(one.problem.noise)[:, 0] * fine * one.noise / one.problem.noise
-    if isinstance(prediction, Displacement):
+    if isinstance(prediction, Displacement) and record.kind == "motion":
         second, prefix = prefixed(place[-1] - place[0], "s")
         _motion(left, one, prediction, scale, second)
         place, across = place / second, ("time", prefix)

@@ -82,7 +82,7 @@ def poor_rows(times: Array, values: Array, off: Array, frequency: float, order: 
     where = [f"{in_unit(readings[end], SI[order])} in {counts[end]} of {values.size} rows" for end in stuck]
     found = [f"readings stick at {one}: the sensor or the recorder saturates" for one in where]
     rows, phase = np.flatnonzero(off > STRAY), np.exp(2j * math.pi * frequency * times[off > 0.5 * STRAY])
-    if 0 < rows.size < 3 or (rows.size and abs(phase.mean()) < 0.8):
+    if order < 2 and (0 < rows.size < 3 or (rows.size and abs(phase.mean()) < 0.8)):  # contacts are pulses
         first = f"the first in row {rows[0] + 1} at {times[rows[0]]:.4g} s: {STRAY:g} standard deviations off"
         found.append(f"{rows.size} of {times.size} rows are outliers, {first}")
     return found
