@@ -21,6 +21,7 @@ from studies.measurement.identify.motion.starts import predictions_of, strobe_pe
 from studies.measurement.identify.record.reading import read_record
 from studies.measurement.identify.record.records import NoAnswer, synthetic
 from studies.measurement.identify.report import Estimate
+from studies.measurement.next_measurement import model as design
 from studies.physics.parameters import ALIASES, fitted_scene, parameters_of, with_values
 from studies.shell.digits import written
 from studies.shell.scene import beam_at, read_scene, single_mode_at
@@ -286,7 +287,7 @@ def test_estimates_are_rounded_to_the_second_digit_of_the_error(estimate, error,
 
 
 def test_the_example_makes_a_record_of_each_kind_and_finds_what_it_put_in(run_study, monkeypatch):
-    monkeypatch.setattr(program, "THIN", (12, 12))
+    monkeypatch.setattr(design, "THIN", (12, 12))
     monkeypatch.setattr(figure, "draw", in_both_styles(figure.draw))
     ran = run_study("identify", "--quick")
     assert ran.code == 0 and all((ran.folder / f"identify_{kind}.png").exists() for kind in program.EXAMPLES)

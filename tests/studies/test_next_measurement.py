@@ -10,7 +10,6 @@ from scipy.optimize import least_squares
 
 from contact import DelayedRestitution, simulate
 from contact.orbits import Shooting
-from studies.measurement.identify import __main__ as program
 from studies.measurement.identify.record.records import synthetic
 from studies.measurement.next_measurement import figure
 from studies.measurement.next_measurement import model as design
@@ -145,7 +144,7 @@ def test_the_errors_by_the_letters_orbits(plane):
 
 
 def test_the_oscillator_is_the_fitted_one(run_study, tmp_path, letter_scene, monkeypatch):
-    monkeypatch.setattr(program, "THIN", (12, 12))
+    monkeypatch.setattr(design, "THIN", (12, 12))
     record, argv = tmp_path / "mine.csv", ("--fit", "gap", "--next")
     at = single_mode_at(letter_scene, 22.2).with_excess(1e-3)
     record.write_text(synthetic("strobe", at, seed=2).text())
@@ -159,9 +158,9 @@ def test_the_oscillator_is_the_fitted_one(run_study, tmp_path, letter_scene, mon
 
 def test_with_loud_noise_no_place_of_the_next_measurement_is_kept(tmp_path, letter_scene, monkeypatch):
     """No orbit outlives its errors, and the letter has no orbits to compare: tables, and no traceback."""
-    monkeypatch.setattr(program, "THIN", (30, 30))
+    monkeypatch.setattr(design, "THIN", (30, 30))
     monkeypatch.setattr(design, "letters_orbits", lambda of: [])
     run = Run(study="identify", folder=tmp_path, scene=letter_scene, command="")
-    places = program.where_to_measure(letter_scene, run, Plan().names, None, 1e-3)
+    places = figure.where_to_measure(letter_scene, run, Plan().names, None, 1e-3)
     assert places == [] and "measurements.csv" in run.files
     assert "no orbit exists" in run.close("done", {"rows": []})["findings"][0]

@@ -49,9 +49,8 @@ Writes:  parameters.csv and correlations.csv, quality.csv, profile.csv, residual
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 from beam import InvalidValue, Refusal
 from contact import ImpactOscillator
@@ -63,12 +62,12 @@ from studies.measurement.identify.motion.displacement import SENSOR
 from studies.measurement.identify.record.reading import read_record
 from studies.measurement.identify.record.records import Kind, NoAnswer, Record, synthetic
 from studies.measurement.identify.report import as_scene, report, without_errors
-from studies.measurement.next_measurement.figure import tabulated
-from studies.measurement.next_measurement.model import EXCESSES, FREQUENCIES_HZ, THIN, Measurement, Plan
+from studies.measurement.next_measurement.figure import where_to_measure
+from studies.measurement.next_measurement.model import Plan
 from studies.physics.least_model import least_modes
 from studies.physics.parameters import Description, described, in_full, parameters_of, require_names
 from studies.shell.options import POSITIONAL, Within
-from studies.shell.scene import Scene, corresponding, harmonic, of_the_letter, periods_of
+from studies.shell.scene import Scene, corresponding, harmonic, periods_of
 from studies.shell.study import Run, study
 
 STEADY = ("free_period", "decay_rate", "gap", "amplitude")
@@ -130,7 +129,9 @@ def identify(
         Within(0, 1e6, "Hz, mm", open=True),
     ] = None,
     noise_um: Annotated[
-        float | None, "noise of the read-out, where it is known", Within(0, 1e9, "µm", open=True)
+        float | None,
+        "noise of the read-out, where it is known; of a velocity per s, of an acceleration per s²",
+        Within(0, 1e9, "µm", open=True),
     ] = None,
     delay_ms: Annotated[
         float | None, "two_parameters: delay, or start of its fit (default: T/136)", Within(0, 1e9, "ms")
@@ -144,13 +145,17 @@ def identify(
     rate: Annotated[
         float | None, "sampling rate of a record without times", Within(0, 1e9, "Hz", open=True)
     ] = None,
+    frame: Annotated[
+        Literal["base", "ground"] | None,
+        "where the sensor of a motion stands (default: base; for accelerations ground)",
+    ] = None,
     next: Annotated[tuple[str, ...], "parameters of the next measurement (example: T tau delay)"] = (),
 ) -> Mapping[str, object]:
     """Read or make, fit, report and draw."""
     harmonic(scene)
     if drive is not None and record is None:
         raise InvalidValue(f"drive is {drive[0]:g} Hz, {drive[1]:g} mm; it needs a record")
-    for name, value in (("columns", columns), ("unit", unit), ("rate", rate)):
+    for name, value in (("columns", columns), ("unit", unit), ("rate", rate), ("frame", frame)):
         if value is not None and record is None:
             raise InvalidValue(f"{name} is {value}; it needs a record")
     if delay_ms is not None and description != "two_parameters" and record is not None:
@@ -165,18 +170,15 @@ def identify(
     if description == "beam":
         scene = run.choose_modes(*least_modes(scene, {"fold": 0.05}))
     if record is not None:
-        read = read_record(record, columns=columns, unit=unit, rate=rate)
-        run.say(read.reading)
+        read = in_frame(read_record(record, columns=columns, unit=unit, rate=rate), frame, run)
         if drive is not None:
             read = replace(read, frequency=drive[0], amplitude=1e-3 * drive[1])
-        if read.origin:
-            run.say(f"the stamps begin at {read.origin:.15g} s: 0 is the first row")
         oscillator = described(scene, description, delay, frequency_of(read, scene))
         given = {record.stem: (read, oscillator)}
         if fit:
             require_names(in_full(fit), oscillator, more=SENSOR)
             if read.kind != "motion" and (lost := [name for name in fit if name in SENSOR]):
-                raise InvalidValue(f"fit names {lost[0]}, which only a record of displacement has")
+                raise InvalidValue(f"fit names {lost[0]}, which only a motion over time has")
             if {"scale", "gap", "amplitude"} <= {*in_full(fit)}:
                 raise InvalidValue("fit names scale, gap and amplitude: give one of the three")
     elif fit:
@@ -220,6 +222,22 @@ def examples(scene: Scene, run: Run, delay: float | None) -> dict[str, tuple[Rec
     return found
 
 
+def in_frame(record: Record, frame: str | None, run: Run) -> Record:
+    """The record with the place of its sensor; what was chosen in reading it is printed."""
+    if record.kind != "motion":
+        if frame is not None:
+            raise InvalidValue(f"frame is {frame}, but the record is no motion over time")
+        return record
+    usual, other = ("ground", "base") if record.order == 2 else ("base", "ground")
+    if record.reading:
+        run.say(record.reading)
+        if frame is None:
+            run.say(f"the sensor is taken to stand on the {usual}: --frame {other} changes gap and amplitude")
+    if record.origin:
+        run.say(f"the stamps begin at {record.origin:.15g} s: 0 is the first row")
+    return replace(record, ground=(frame or usual) == "ground")
+
+
 def answered(one: Fit) -> Fit:
     """The fit; NoAnswer with reasons and the best values if its residuals are unlike noise."""
     if not one.too_small:
@@ -232,14 +250,3 @@ def answered(one: Fit) -> Fit:
         why += contradictions(times, values, residuals, frequency, period, one.record.order)
     reason = "; ".join([*dict.fromkeys(why)][:2])
     raise NoAnswer(f"{reason}; the best values found, of unknown error, are {without_errors(one)}")
-
-
-def where_to_measure(
-    scene: Scene, run: Run, wanted: Sequence[str], delay: float | None, noise: float
-) -> list[Measurement]:
-    """The best places to measure the `wanted` parameters of Eq. (1) with a constant `delay` [s]."""
-    before = {name: error for name, error in Plan().before.items() if name not in wanted}
-    plan, thin = Plan(names=tuple(wanted), noise=noise, before=before), THIN[run.quick]
-    frequencies = [corresponding(scene, f) for f in FREQUENCIES_HZ[::thin]]
-    of = partial(described, scene, "two_parameters", delay)
-    return tabulated(run, of, plan, frequencies, EXCESSES[::thin], letters=of_the_letter(scene))

@@ -88,6 +88,7 @@ class Quality:
 def units_of(found: Fit) -> list[str]:
     """The units of a fit's numbers."""
     units = {name: one.unit for name, one in parameters_of(found.oscillator).items()} | UNITS
+    units["offset"] = found.record.unit
     return [units[name] for name in found.names]
 
 

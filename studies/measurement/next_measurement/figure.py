@@ -14,10 +14,12 @@ from matplotlib.ticker import FuncFormatter
 
 from studies import letter
 from studies.measurement.next_measurement import model
-from studies.measurement.next_measurement.model import Array, Measurement, Of, Plan, best
+from studies.measurement.next_measurement.model import Array, Measurement, Plan, best
+from studies.physics.parameters import described
 from studies.shell import plotting
 from studies.shell.digits import written
 from studies.shell.run import Run
+from studies.shell.scene import Scene, corresponding, of_the_letter
 
 BEST = ("frequency_hz", "excess", "m", "errors", "together")  # columns on the terminal
 PLANE = "Standard errors by the best orbit at each frequency and excess; the best places are numbered."
@@ -32,11 +34,19 @@ ERRORS = {
 """Parameter -> name, label and scale of its error."""
 
 
-def tabulated(
-    run: Run, of: Of, plan: Plan, frequencies: Sequence[float], excesses: Sequence[float], *, letters: bool
+def where_to_measure(
+    scene: Scene, run: Run, wanted: Sequence[str], delay: float | None, noise: float
 ) -> list[Measurement]:
-    """Tables, figure and findings over the plane, with the letter's orbits if `letters`; the best places."""
-    columns = run.map(partial(model.measurements_at, of, plan, excesses), frequencies, "frequencies")
+    """The best places to measure the `wanted` parameters of Eq. (1) with a constant `delay` [s].
+
+    Tables, figure and findings over the plane are stored, on the letter's scene with the letter's orbits.
+    """
+    before = {name: error for name, error in Plan().before.items() if name not in wanted}
+    plan, thin = Plan(names=tuple(wanted), noise=noise, before=before), model.THIN[run.quick]
+    of, letters = partial(described, scene, "two_parameters", delay), of_the_letter(scene)
+    frequencies = [corresponding(scene, f) for f in model.FREQUENCIES_HZ[::thin]]
+    work = partial(model.measurements_at, of, plan, model.EXCESSES[::thin])
+    columns = run.map(work, frequencies, "frequencies")
     found = [one for column in columns for one in column]
     chosen = best(found)
     caption = f"Standard errors of {', '.join(plan.names)} by one orbit.".replace("_", " ")

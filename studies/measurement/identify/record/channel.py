@@ -107,4 +107,5 @@ def clear_of(record: Record, begin: Array, end: Array, lasting: float, width: fl
     width = max(width, BESIDE * float(np.median(np.diff(times))))
     since = (times[:, None] - begin + width) % lasting
     near = np.any(since < end - begin + 2.0 * width, axis=1)
-    return replace(record, rows=record.rows[~near])
+    note = f"{np.sum(near)} of {near.size} rows next to impacts or in contact are left out"
+    return replace(record, rows=record.rows[~near], notes=(*record.notes, note))
