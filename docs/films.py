@@ -9,7 +9,7 @@ from sphinx_gallery.sorting import FileNameSortKey
 
 ORDER = """first_graze p4_and_its_hysteresis whole_branch one_collision bands_of_the_map strange_attractor
 coming_to_rest two_stops contact_laws peak_force mode_shapes matrices_of_your_own modal_test
-missed_touches""".split()
+fit_a_record missed_touches""".split()
 
 
 class ReadingOrder(FileNameSortKey):

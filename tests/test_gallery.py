@@ -69,6 +69,15 @@ def one_collision(found):
     assert hit.delay == approx(expected, rel=0.02)
 
 
+def fit_a_record(found):
+    """What was put in comes out, and the predicted fold is right within the error of the amplitude."""
+    bench, one = found["bench"], found["fitted"]
+    truth = [0.0402, 3.2, 8.5e-3, bench.drive.amplitude, 0.1, 21.9, 0.0, 0.0]
+    assert np.abs((one.estimate - truth) / one.errors).max() < 4.0 and one.record.rows.shape == (2999, 2)
+    assert found["predicted"].amplitude == approx(found["true"].amplitude, abs=4.0 * one.errors[3])
+    assert one.problem.prediction.m == 4 and one.noise == approx(5e-6, rel=0.05)
+
+
 def peak_force(found):
     force, least = found["force"], found["gaps"][:, None] / found["amplitudes"]
     assert force.size >= 400 and np.array_equal(force == 0.0, least > found["factor"])
