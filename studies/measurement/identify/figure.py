@@ -32,7 +32,7 @@ READINGS = {"x_m": ("displacement", 1e3, "mm", 1e6, "µm"), "v_m_per_s": ("veloc
 READINGS |= {"a_m_per_s2": ("acceleration", 1.0, "m/s²", 1.0, "m/s²")}
 READINGS |= dict.fromkeys(("excess", "error"), ("excess at the end of $p_m$", 1e2, "%", 1e2, "%"))
 """Last column -> name, scale and unit of the readings, scale and unit of the residuals."""
-OVER = {"phase": " / 2π", "offset": " / gap"}  # what an interval of a number that may be zero is divided by
+OVER = {"phase": " / 2π", "offset": " / range"}  # what an interval of a number that may be zero is divided by
 RISE, AGAIN = "rise of $\\chi^2$", "other parameter, fitted again"
 BLUE: plotting.Style = {"color": plotting.BLUE, "linestyle": "none", "markerfacecolor": "none"}
 PALE: plotting.Style = {"color": plotting.tint(plotting.BLUE, 0.5)}
@@ -121,7 +121,7 @@ def _motion(axis: Axes, one: Fit, prediction: Displacement, scale: float, second
 def _intervals(axis: Axes, one: Fit, values: Mapping[str, str]) -> None:
     """A row a parameter: its name and printed value, and the 90 % interval about the estimate."""
     sizes = dict(zip(one.names, np.where(one.estimate, np.abs(one.estimate), one.errors), strict=True))
-    sizes |= {"phase": 2.0 * math.pi, "offset": one.oscillator.stop.gap}
+    sizes |= {"phase": 2.0 * math.pi, "offset": float(np.ptp(one.record.observed))}
     names = [f"{name.replace('_', ' ')}{OVER.get(name, '')}  {values[name]}" for name in one.names]
     ends = 100.0 * (one.intervals().T - one.estimate).T / np.array([[sizes[name]] for name in one.names])
     half = np.abs(np.where(np.isfinite(ends), ends, 0.0)).max(axis=1)
