@@ -1,42 +1,36 @@
-"""Instruments whose text files say more than a heading: by what they are recognised, and where it stands.
+"""Instruments whose text files say more than a heading: by what they are recognised, and where it is.
 
-`step`, `start` and `units` are labels: the value stands in the cells beside one, or below it in the heading.
+`step`, `start` and `units` are labels: the value is in the cells beside one, or below it in the heading.
 """
 
 import re
 from dataclasses import dataclass
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Format:
-    """One format; `beside` if words stand beside the first numbers, whose columns then have these `names`."""
+    """One format, recognised if a text begins with its `signature`, a regular expression."""
 
     name: str
     signature: str
     step: str = "Sample Interval"
     start: str = "X0"
     units: str = "Vertical Units"
-    names: tuple[str, ...] = ()
-    beside: bool = False
 
 
 FORMATS = (
-    Format(
-        name="LabVIEW measurement file", signature="LabVIEW Measurement", step="Delta_X", units="Y_Unit_Label"
-    ),
-    Format(
-        name="Tektronix TDS", signature='"?Record Length"?[,;]', names=("Time (s)", "channel"), beside=True
-    ),
-    Format(name="Tektronix", signature="Model[,;]|.*Firmware Version"),
-    Format(name="Rigol", signature=r"X[,;]CH\d.*Start[,;]Increment", step="Increment", start="Start"),
-    Format(name="Keysight", signature="x-axis[,;]"),
-    Format(name="Polytec", signature="Source File Name:"),
-    Format(name="catman", signature=".*catman"),
-    Format(name="phyphox", signature='"Time \\(s\\)"[,;]"'),
+    Format("LabVIEW measurement file", "LabVIEW Measurement", step="Delta_X", units="Y_Unit_Label"),
+    Format("Tektronix TDS", '"?Record Length"?[,;]'),  # words beside the first numbers
+    Format("Tektronix", "Model[,;]|.*Firmware Version"),
+    Format("Rigol", r"X[,;]CH\d.*Start[,;]Increment", step="Increment", start="Start"),
+    Format("Keysight", "x-axis[,;]"),
+    Format("Polytec", "Source File Name:"),
+    Format("catman", ".*catman"),
+    Format("phyphox", r'"Time \(s\)"[,;]"'),
+    Format("a table", ""),
 )
-TABLE = Format(name="a table", signature="")
 
 
 def format_of(text: str) -> Format:
-    """The format with whose signature a text begins, or `TABLE`."""
-    return next((one for one in FORMATS if re.match(one.signature, text[:2000].lstrip(), re.I)), TABLE)
+    """The first format that fits a text; the last one fits all."""
+    return next(one for one in FORMATS if re.match(one.signature, text[:2000].lstrip(), re.I))

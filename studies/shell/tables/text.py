@@ -1,17 +1,16 @@
-"""A table in a text: the rows of numbers below the words that are their heading.
+"""A table in a text: rows of numbers below the words that are their heading.
 
-The separator (tab, semicolon, comma, blanks) and the decimal mark are those with which most cells are
-numbers. The columns of the table are those that mostly hold numbers; it begins with the first three rows that
-are whole, and what follows is part of it. The last line of words above is the heading, or a line of units
-below it. Stamps (2024-03-01T00:00:00.5, 12:30:01.25) count in seconds from the first one.
+Lines that begin with # or % are comments, and empty lines are skipped. The separator and the decimal mark are
+those with which most cells are numbers. The columns of the table hold numbers in the second half of the text.
+`_first_row` finds where the table begins, and `_heading` reads the words above it. From there on every line
+is a row, NaN where a cell of it is no number.
 """
 
 import csv
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from datetime import UTC, datetime
 from itertools import pairwise
 
 import numpy as np
@@ -23,210 +22,165 @@ from studies.shell.tables.units import is_unit, split
 
 Array = NDArray[np.float64]
 MARKS = {"\t": "tabs", ";": "semicolons", ",": "commas", " ": "blanks"}
-LOOKED_AT, WHOLE, SEEN, MOST = 400, 3, 3, 1000
-"""Lines to choose the separator by, whole rows that begin a table, lines shown, cells kept as text."""
-LEAST = 0.25  # share of numbers in a column
-_STAMP = re.compile(r"(?:(\d{4}-\d\d-\d\d)[T ])?(\d\d?:\d\d:\d\d)(?:[.,](\d{1,9}))?(Z|[+-]\d\d:?\d\d)?$")
+LOOKED_AT = 400  # lines to choose the separator by
+LEAST = 0.25  # share of numbers in a column of the table
+NOTE = re.compile(r"([^=:]*?)\s*[=:]\s*(.+)")
+STAMP = re.compile(r"(?:(\d{4}-\d\d-\d\d)[T ])?(\d\d?:\d\d:\d\d)(?:[.,](\d{1,9}))?(?:Z|[+-]\d\d:?\d\d)?")
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Table:
     """A table as it was found; `rows` of shape (n_rows, n_columns) are NaN where a cell is no finite number.
 
-    `names` are headings as written, `units` as well, "" if none; `lines` are the lines of the rows in the
-    file, `lost` texts of the first cells that are no numbers by (line, column). `step` and `start` [s] are
-    None and 0 if the file does not state them; `headed` is False if it has no heading.
+    `names` and `units` are as written: "column 1", ... without a heading, "" without a unit. `lines` are the
+    lines of the rows in the file, `cell(row, column)` is a cell as written, and `notes` are comments such as
+    `name = value`. `step` and `start` [s] are None and 0 if the file does not state them.
     """
 
     names: tuple[str, ...]
     units: tuple[str, ...]
     rows: Array
-    recognised: str
     lines: NDArray[np.int64]
-    lost: Mapping[tuple[int, int], str] = field(default_factory=dict)
+    recognised: str
+    cell: Callable[[int, int], str] = lambda row, column: "nan"
     step: float | None = None
     start: float = 0.0
     notes: Mapping[str, str] = field(default_factory=dict)
-    headed: bool = True
 
 
 class Numbers:
-    """Cells to numbers; stamps count from the first one."""
+    """Cells to numbers. Stamps (2024-03-01T00:00:00.5, 12:30:01.25) are seconds since the first one."""
 
-    first: int | None = None
+    first: np.datetime64 | None = None
+
+    def row(self, cells: Sequence[str]) -> list[float]:
+        """The numbers in a row of cells."""
+        try:
+            return [float(cell) for cell in cells]  # three times as fast
+        except ValueError:
+            return [self.of(cell) for cell in cells]
 
     def of(self, cell: str) -> float:
-        """The number, or seconds since the first stamp, or NaN."""
+        """The number in a cell, NaN for words."""
         try:
-            number = float(cell)
-            return number if math.isfinite(number) else math.nan
+            return float(cell)
         except ValueError:
-            found = _STAMP.match(cell.strip(' "'))
+            stamp = STAMP.fullmatch(cell.strip(' "'))
+        date, clock, digits = stamp.groups() if stamp else ("no stamp", "", "")
         try:
-            if found is None:
-                return math.nan
-            whole = datetime.fromisoformat(f"{found[1] or '2000-01-01'}T{found[2]:0>8}{found[4] or '+00:00'}")
+            since = np.datetime64(f"{date or '2000-01-01'}T{clock:0>8}.{digits or 0}", "ns")
         except ValueError:
             return math.nan
-        since = whole - datetime(2000, 1, 1, tzinfo=UTC)
-        stamp = (since.days * 86400 + since.seconds) * 10**9 + int((found[3] or "0").ljust(9, "0"))
-        self.first = stamp if self.first is None else self.first
-        return (stamp - self.first) / 1e9
+        self.first = self.first or since
+        return float((since - self.first) / np.timedelta64(1, "s"))
 
 
 def cells_of(line: str, mark: str, comma: bool = False) -> list[str]:
     """The cells of a line; with decimal commas, points in their place."""
     text = line.replace(",", ".") if comma else line
-    if '"' in text:
-        return next(
-            csv.reader([text.strip() if mark == " " else text], delimiter=mark, skipinitialspace=True), []
-        )
-    return text.split() if mark == " " else text.split(mark)
+    if '"' not in text:
+        return text.split(None if mark == " " else mark)
+    return next(csv.reader([text.strip(" ")], delimiter=mark, skipinitialspace=True), [])
 
 
 def _written(lines: Sequence[str]) -> tuple[str, bool]:
     """The separator, and whether decimals have commas: with which most cells are numbers."""
 
     def gain(way: tuple[str, bool]) -> int:
-        rows = ([cell for cell in cells_of(line, *way) if cell.strip()] for line in lines)
-        numbers = (
-            (sum("\t" not in cell and math.isfinite(Numbers().of(cell)) for cell in row), len(row))
-            for row in rows
-        )
-        return sum(max(0, 2 * n - of) for n, of in numbers)  # numbers less words, where this is above 0
+        rows = [[cell for cell in cells_of(line, *way) if cell.strip()] for line in lines]
+        isnumber = [["\t" not in cell and math.isfinite(Numbers().of(cell)) for cell in row] for row in rows]
+        return sum(max(0, 2 * sum(row) - len(row)) for row in isnumber)  # numbers less words, row by row
 
-    return max(
-        ((mark, comma) for comma in (False, True) for mark in MARKS if not comma or mark != ","), key=gain
-    )
+    return max([*((mark, False) for mark in MARKS), *((mark, True) for mark in "\t; ")], key=gain)
 
 
-def read_text(text: str, encoding: str, source: object) -> Table:
+def _first_row(isnumber: NDArray[np.bool_], cells: list[list[str]], first: int) -> int | None:
+    """The row with which the table begins, or None; `isnumber` is about its columns, from `first` on.
+
+    It is the first of three rows in succession with numbers in all columns: one or two such rows may be part
+    of a heading. If there are no three, two or one are enough. The table begins earlier where the rows above
+    have some numbers and no word in the first column: they lost a number. A heading may come again.
+    """
+    whole = isnumber.all(axis=1)
+    runs = (np.convolve(whole, np.ones(need), "valid") == need for need in (3, 2, 1))
+    begin = next((int(np.argmax(run)) for run in runs if run.any()), None)
+    empty = np.array([not row[first].strip() for row in cells])
+    part = isnumber.any(axis=1) & (isnumber[:, 0] | empty)
+    while begin and part[begin - 1]:
+        begin -= 1
+    return cells.index(cells[begin - 1]) + 1 if begin else begin  # below the first such heading
+
+
+def _heading(words: list[list[str]], columns: NDArray[np.int64], form: Format) -> tuple[list[str], list[str]]:
+    """Names and units of the columns, from the rows of words above the table.
+
+    The last row is the heading if it has a word for the last column. If it holds only units, or the step and
+    the start below their labels, the row above is the heading. Units are in the heading, in that row of
+    units, or beside the format's label for them.
+    """
+    empty = [""] * columns.size
+    above, below = [empty, empty, *([row[i] for i in columns] for row in words)][-2:]
+    isunits = any(above) and any(below) and all(is_unit(cell) or not cell for cell in below)
+    names, line = (above, below) if isunits or form.start in [[], [], *words][-2] else (below, empty)
+    if not names[-1]:
+        names, line = [f"column {i + 1}" for i in range(columns.size)], empty
+    beside = next((row for row in words if row[0] == form.units), [])
+    labelled = [beside[i] or beside[1] if beside and i else "" for i in columns]
+    units = [split(name)[1] or a or b for name, a, b in zip(names, line, labelled, strict=True)]
+    return names, [unit.strip(" []()") for unit in units]
+
+
+def _stated(words: list[list[str]], label: str) -> float | None:
+    """The number below a label, or beside it if it is the first cell of its row."""
+    for row, after in pairwise([*words, []]):
+        if label in row:
+            i = row.index(label)
+            found = [Numbers().of(cell.replace(",", ".")) for cell in (after[i : i + 1] if i else row)]
+            return next(filter(math.isfinite, found), None)
+    return None
+
+
+def read_text(text: str, encoding: str = "") -> Table:
     """The table in a text; InvalidValue with what was seen if there is none."""
-    found = format_of(text)
-    lines, comments, notes = list[tuple[int, str]](), list[str](), dict[str, str]()
+    form, numbers = format_of(text), Numbers()
+    comments, numbered = list[str](), list[tuple[int, str]]()
     for n, line in enumerate(text.splitlines(), 1):
-        if line.lstrip()[:1] in ("#", "%") or (line[:1] == ";" and line[1:2].strip(" ;,\t")[:1].isalpha()):
-            comments.append(line.lstrip("#%; \t"))
-            name, _, value = (part.strip() for part in re.split(r"([=:])", comments[-1] + "=", maxsplit=1))
-            notes |= {name: value.rstrip("=")} if value.rstrip("=") else {}
+        if line.lstrip().startswith(("#", "%")):
+            comments.append(line.strip("#% \t"))
         elif line.strip(" ,;\t"):
-            lines.append((n, line))
+            numbered.append((n, line))
+    lines = [line for _, line in numbered]
     if not lines:
-        raise InvalidValue(f"the record {source} is empty; give a table of numbers with a heading")
-    mark, comma = _written([line for _, line in lines[:: max(1, len(lines) // LOOKED_AT)]])
-    number, raw = Numbers(), [cells_of(line, mark, comma) for _, line in lines]
-    rows = list[list[float]]()
-    for row in raw:
-        try:
-            rows.append([float(cell) for cell in row])
-        except ValueError:
-            rows.append([number.of(cell) for cell in row])
-    width = int(np.median([len(row) for row in rows[len(rows) // 2 :]]))
-    values = np.array([(row + [math.nan] * width)[:width] for row in rows], dtype=float)
+        raise InvalidValue("is empty; give a table of numbers with a heading")
+    mark, comma = _written(lines[:: max(1, len(lines) // LOOKED_AT)])
+    cells, half = [cells_of(line, mark, comma) for line in lines], len(lines) // 2
+    width = int(np.median([len(row) for row in cells[half:]]))
+    empty = [""] * width
+    cells = [row if len(row) == width else (row + empty)[:width] for row in cells]
+    values = np.array([numbers.row(row) for row in cells])
     values[~np.isfinite(values)] = math.nan
     isnumber = np.isfinite(values)
-    columns = np.flatnonzero(
-        np.sum(isnumber[len(rows) // 2 :], axis=0) > LEAST * (len(rows) - len(rows) // 2)
-    )
-    begin = _begin(isnumber, raw, columns, found)
-    if begin and (again := [i for i in range(begin - 1) if lines[i][1] == lines[begin - 1][1]]):
-        begin = again[0] + 1  # a heading that is repeated
-    if not columns.size or begin is None:
-        seen = " | ".join(line.strip()[:40] for _, line in lines[:SEEN])
-        raise InvalidValue(
-            f"the record {source} holds no table of numbers: its first lines are {seen!r}; "
-            "give columns of numbers with a heading, one row for each sample"
-        )
-    words = [cells_of(line, mark) for _, line in lines[:begin]]
-    if not words and comments and len(cells_of(comments[-1], mark)) == width:
-        words = [cells_of(comments[-1], mark)]
-    head = Heading(words, columns, found, number)
-    kept, body = head.kept(values[begin:, columns]), np.array([n for n, _ in lines[begin:]])
-    lost = {
-        (int(body[i]), int(k)): "".join(raw[begin + i][columns[kept[k]] :][:1]).strip()[:40]
-        for i, k in np.argwhere(~isnumber[begin:, columns[kept]])[:MOST]
-    }
-    how = [found.name, MARKS[mark] + (", decimal comma" if comma else ""), *([encoding] if encoding else [])]
+    columns = np.flatnonzero(np.mean(isnumber[half:], axis=0) > LEAST)
+    begin = _first_row(isnumber[:, columns], cells, columns[0]) if columns.size else None
+    if begin is None:
+        seen = " | ".join(line.strip()[:40] for line in lines[:3])
+        what = "give columns of numbers with a heading, one row for each sample"
+        raise InvalidValue(f"holds no table of numbers: its first lines are {seen!r}; {what}")
+    above = lines[:begin] or [line for line in comments[-1:] if len(cells_of(line, mark)) == width]
+    words = [[cell.strip().strip('"') for cell in cells_of(line, mark)] + empty for line in above]
+    names, units = _heading(words, columns, form)
+    if len(names) > 1 and names[0].lower() in ("", "unnamed: 0"):  # the index of pandas
+        columns, names, units = columns[1:], names[1:], units[1:]
+    body = cells[begin:]
+    how = [form.name, MARKS[mark] + (", decimal comma" if comma else ""), encoding]
     return Table(
-        names=tuple(head.names[i] for i in kept),
-        units=tuple(head.units[i] for i in kept),
-        rows=values[begin:, columns[kept]],
-        recognised="; ".join(how),
-        lines=body,
-        lost=lost,
-        step=head.stated(found.step),
-        start=head.stated(found.start) or 0.0,
-        notes=notes,
-        headed=head.headed,
+        tuple(names),
+        tuple(units),
+        rows=values[begin:, columns],
+        lines=np.array([n for n, _ in numbered[begin:]]),
+        recognised="; ".join(filter(None, how)),
+        cell=lambda row, column: body[row][columns[column]].strip()[:40],
+        step=_stated(words, form.step),
+        start=_stated(words, form.start) or 0.0,
+        notes={note[1]: note[2] for note in map(NOTE.match, comments) if note},
     )
-
-
-def _begin(
-    isnumber: NDArray[np.bool_], raw: list[list[str]], columns: NDArray[np.int64], form: Format
-) -> int | None:
-    """The first row of the table: three whole rows follow, or rows that lost a number come before them."""
-    others = [i for i in range(isnumber.shape[1]) if i not in columns]
-    texts = {i for i in others if sum(len(row) > i and row[i].strip() != "" for row in raw) > 0.5 * len(raw)}
-    whole = np.all(isnumber[:, columns], axis=1)
-    lone = [i for i in others if i not in texts and not form.beside]
-    for i in range(min(len(raw), 300) if lone else 0):
-        whole[i] &= not any(len(raw[i]) > k and raw[i][k].strip() for k in lone)
-    counts = (np.convolve(whole, np.ones(need), "valid") == need for need in range(WHOLE, 0, -1))
-    runs = next((found for found in map(np.flatnonzero, counts) if found.size), None)
-    if runs is None:
-        return None
-    begin = int(runs[0])
-    while (
-        begin
-        and isnumber[begin - 1, columns].any()
-        and (
-            isnumber[begin - 1, columns[0]]
-            or not "".join(raw[begin - 1][columns[0] : columns[0] + 1]).strip()
-        )
-        and not any(len(raw[begin - 1]) > k and raw[begin - 1][k].strip() for k in lone)
-    ):
-        begin -= 1
-    return begin
-
-
-class Heading:
-    """Names and units of the columns of a table, from the lines of words above it."""
-
-    def __init__(
-        self, words: list[list[str]], columns: NDArray[np.int64], form: Format, number: Numbers
-    ) -> None:
-        self.words = [[cell.strip().strip('"') for cell in row] for row in words]
-        self.number, last = number, int(columns[-1])
-        full = [row for row in self.words if len(row) > last]
-        over, below = ([[], [], *full][-2:]) if full and self.words[-1] is full[-1] else ([], [])
-        here = [[row[i] if len(row) > i else "" for i in columns] for row in (over, below)]
-        under = bool(over) and all(is_unit(cell) or not cell for cell in here[1]) and any(here[1])
-        ruled = bool(form.step in over and form.step in below) or form.start in over
-        names = here[0] if under or ruled else here[1]
-        self.headed = any(names)
-        self.names = list(form.names) or (
-            names if self.headed else [f"column {i + 1}" for i in range(columns.size)]
-        )
-        named = [split(name)[1] for name in self.names]
-        line = here[1] if under or ruled else [""] * columns.size
-        said = next((row for row in self.words if row and row[0] == form.units), [])
-        side = [
-            said[i] if 0 < i < len(said) and said[i] else said[1] if i and len(said) > 1 else ""
-            for i in columns
-        ]
-        self.units = [(a or b or c).strip(" []()") for a, b, c in zip(named, line, side, strict=True)]
-
-    def kept(self, values: Array) -> NDArray[np.int64]:
-        """The columns without an unnamed index 0, 1, 2 ..."""
-        index = self.headed and self.names[0].lower() in ("", "unnamed: 0")
-        return np.arange(len(self.names))[1 if index and len(self.names) > 1 else 0 :]
-
-    def stated(self, label: str) -> float | None:
-        """The number beside a label, or below it."""
-        for row, after in pairwise([*self.words, []]):
-            if label in row:
-                i = row.index(label)
-                for cell in [*after[i : i + 1], *row[i + 1 :]] if i else row[i + 1 :]:
-                    if math.isfinite(found := self.number.of(cell.replace(",", "."))):
-                        return found
-        return None

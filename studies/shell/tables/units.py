@@ -19,23 +19,8 @@ WORDS = {
     **{"micron": "µm", "microns": "µm", "meter": "m", "metre": "m", "minutes": "min", "minuten": "min"},
 }
 OTHERS = set("v volt volts mv a ma n kn hz 1 - counts count pa kpa bar °c c k % deg rad adc".split())
-"""Units that are no displacement, velocity, acceleration or time."""
 TIME_WORDS = set("t time times zeit timestamp stamp elapsed uhrzeit zeitstempel x_value x-axis".split())
-COUNT_WORDS = {
-    "count",
-    "sample",
-    "samples",
-    "index",
-    "n",
-    "no",
-    "nr",
-    "i",
-    "row",
-    "x",
-    "unnamed: 0",
-    "frame",
-    "",
-}
+COUNT_WORDS = {"", "unnamed: 0", *"count sample samples index n no nr i row x frame".split()}
 _BRACKETS = re.compile(r"^(.*?)\s*[\[(]\s*([^\])]*?)\s*[\])]\s*$")
 _AFTER = re.compile(r"^(.*?)(?:\s+in\s+|\s*/\s*|_)(\S+)$")
 
@@ -49,6 +34,11 @@ def plain(unit: str) -> str:
     return text if text in UNITS else lower if lower in UNITS else text
 
 
+def known(unit: str) -> tuple[str, float]:
+    """Dimension and size of a unit, "" and 1 if it is unknown."""
+    return UNITS.get(plain(unit), ("", 1.0))
+
+
 def is_unit(text: str) -> bool:
     """Whether a cell below a heading is a unit."""
     return plain(text) in UNITS or plain(text).lower() in OTHERS
@@ -59,19 +49,17 @@ def split(heading: str) -> tuple[str, str]:
     if found := _BRACKETS.match(heading):
         return found[1] or heading, found[2]
     before, per, rest = heading.partition("_per_")
-    found = _AFTER.match(before)
-    if (
-        found
-        and is_unit(found[2] + per.replace("_per_", "/") + rest)
-        and found[2] not in ("x", "min", "h", "1")
-    ):
-        return found[1], found[2] + per + rest
+    if (found := _AFTER.match(before)) and found[2] not in ("x", "min", "h", "1"):
+        unit = found[2] + per + rest
+        if is_unit(unit):
+            return found[1], unit
     return heading, ""
 
 
 def is_time(heading: str, unit: str) -> bool:
-    """Whether a column is a time, by its unit or its name."""
-    name = split(heading)[0].lower().split()
-    known = UNITS.get(plain(unit), ("", 1.0))[0]
-    words = {*name[:1], "_".join(name), split(heading)[0].lower().split("_")[0]}
-    return known == "s" or (not known and bool(words & (TIME_WORDS | WORDS.keys()) - {"meter", "metre"}))
+    """Whether a column is a time, by its unit or, if that is unknown, by the first word of its name."""
+    if dimension := known(unit)[0]:
+        return dimension == "s"
+    name = split(heading)[0].lower()
+    words = {name, re.split("[ _]", name)[0]}
+    return bool(words & (TIME_WORDS | WORDS.keys()) - {"meter", "metre"})

@@ -24,23 +24,15 @@ from studies.measurement.identify.record.records import (
 )
 from studies.shell.tables.binary import read_table
 from studies.shell.tables.text import Table
-from studies.shell.tables.units import COUNT_WORDS, UNITS, is_time, plain, split
+from studies.shell.tables.units import COUNT_WORDS, is_time, known, plain, split
 
 FEWEST: dict[Kind, int] = {"strobe": 4, "motion": 40, "transitions": 1}  # rows that each kind needs
 LARGEST, LATEST = 1e6, 1e15  # largest size of a number, in the unit of its column, and of a time [s]
 FAR = 100.0  # first stamp over the span of the record, above which times begin at the first row
-UNIT = re.compile(r"([-+]?[\d.]+(?:e[-+]?\d+)?)?\s*(\S+)", re.I)
-KHZ = re.compile(r"([\d.]+(?:e[+-]?\d+)?)\s*(k?)", re.I)
+NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?", re.I)
+UNIT = re.compile(rf"(?:.+=)?\s*({NUMBER.pattern})?\s*([^\s=]+)", re.I)  # mm, V=mm, V=5e-3 m
+RATE = re.compile(rf"({NUMBER.pattern})\s*(k?)", re.I)  # 2000 Hz, 2 kHz
 RATES = re.compile(r"rate|sampling|abtast|\bfs\b|\bodr\b", re.I)  # names of notes that say a rate
-
-
-def _float(text: str | None) -> float:
-    """The number in a text; 1 for an empty one, 0 for words."""
-    try:
-        number = float(text or 1.0)
-    except ValueError:
-        return 0.0
-    return number if math.isfinite(number) else 0.0
 
 
 @dataclass(frozen=True)
@@ -60,10 +52,10 @@ class Source:
     def place(self, name: str) -> int:
         """The column of this name, or of this number from 1."""
         names = [one.lower() for one in self.table.names]
-        short = [split(one)[0].lower() for one in self.table.names]
-        for known in (names, short, [str(i + 1) for i in range(len(names))]):
-            if known.count(name.strip().lower()) == 1:
-                return known.index(name.strip().lower())
+        numbers = [str(i + 1) for i in range(len(names))]
+        for way in (names, [split(one)[0] for one in names], numbers):
+            if way.count(name.strip().lower()) == 1:
+                return way.index(name.strip().lower())
         raise self.refuse(f"has no column {name.strip()[:40]!r}; it has {self.listed(range(len(names)))}")
 
     def listed(self, places: range | list[int]) -> str:
@@ -75,54 +67,47 @@ class Source:
         """The columns of the time (None: there is none) and of the channel."""
         table, width = self.table, len(self.table.names)
         times = [i for i in range(width) if is_time(table.names[i], table.units[i])]
+        if table.names[0] == "column 1" and not times and width > 1:  # no heading
+            first = table.rows[np.isfinite(table.rows[:, 0]), 0][:50]
+            times = [0] if np.all(np.diff(first) >= 0.0) and first[-1] > first[0] else []
         if self.columns is not None:
             *given, value = (self.place(name) for name in self.columns.split(","))
             if len(given) > 1 or value in given:
                 raise InvalidValue(f"columns is {self.columns!r}; it must be TIME,VALUE or one VALUE")
-            return next(iter([*given, *times]), None), value
+            return next((i for i in [*given, *times] if i != value), None), value
         counts = [i for i in range(width) if i not in times and self.counted(i)]
         counts = counts if width > len(times) + len(counts) else []  # x alone is a channel
-        if not table.headed and not times and width > 1 and np.all(np.diff(table.rows[:50, 0]) > 0.0):
-            times = [0]
-        rest = [i for i in range(width) if i not in times and i not in counts]
-        if len(rest) != 1:
-            if not rest:
-                raise self.refuse(
-                    f"has a time and no channel beside it; its columns are {self.listed(range(width))}"
-                )
-            example = f"--columns {','.join(str(i + 1) for i in [*times[:1], *counts[:1]][:1] + rest[:1])}"
-            raise self.refuse(f"has {len(rest)} channels, {self.listed(rest)}: choose one, as in {example}")
-        return next(iter([*times, *counts]), None), rest[0]
+        clocks = [*times, *counts]
+        rest = [i for i in range(width) if i not in clocks]
+        if not rest:
+            raise self.refuse(f"has no channel beside its time; its columns are {self.listed(times)}")
+        if len(rest) > 1:
+            what = f"{len(rest)} channels, {self.listed(rest)}"
+            example = ",".join(str(i + 1) for i in [*clocks[:1], rest[0]])
+            raise self.refuse(f"has {what}: choose one, as in --columns {example}")
+        return next(iter(clocks), None), rest[0]
 
     def channel(self, i: int) -> tuple[str, float, str]:
         """The column of a record that channel i is, the size of its unit, and how the unit is written."""
-        name, written = self.table.names[i], self.table.units[i]
-        dimension, size = UNITS.get(plain(written), ("", 1.0))
+        written, stated = self.table.units[i], known(self.table.units[i])
+        dimension, size = stated
         if self.unit is not None:
-            recorded, equals, per = self.unit.rpartition("=")
-            found = UNIT.fullmatch(per.strip())
-            known, many = (
-                UNITS.get(plain(found[2]), ("", 1.0)) if found else ("", 1.0),
-                _float(found[1] if found else ""),
-            )
-            if known[0] not in CHANNELS.values() or (equals and not recorded.strip()) or not many:
+            found = UNIT.fullmatch(self.unit.strip())
+            dimension, size = known(found[2]) if found else ("", 1.0)
+            size *= float(found[1] or 1.0) if found else 1.0
+            if dimension not in CHANNELS.values() or not 0.0 < abs(size) < math.inf:
                 raise InvalidValue(f"unit is {self.unit!r}; it must be such as mm, m/s, g or V=5e-3 m")
-            dimension, size = known[0], known[1] * many
-            written = self.unit.strip()
+            differs = stated[0] and stated != (dimension, size)
+            written = self.unit.strip() + (f" (the file says {written})" if differs else "")
         if dimension not in CHANNELS.values():
             what = f"the unit {written!r}" if written else "no unit"
-            example = (
-                f"--unit {written or '1'}=5e-3 m"
-                if written
-                else "--unit mm, or how much 1 is: --unit 1=5e-3 m"
-            )
-            raise self.refuse(f"has {what} for the channel {name!r}: give {example}")
+            example = f"{written}=5e-3 m" if written else "mm, or how much 1 is: --unit 1=5e-3 m"
+            raise self.refuse(f"has {what} for the channel {self.table.names[i]!r}: give --unit {example}")
         return next(column for column, unit in CHANNELS.items() if unit == dimension), size, written
 
     def counted(self, i: int) -> bool:
         """Whether column i counts samples: by its name, without a unit, in steps of one."""
-        unknown = plain(self.table.units[i]) not in UNITS
-        named = unknown and split(self.table.names[i])[0].lower() in COUNT_WORDS
+        named = split(self.table.names[i])[0].lower() in COUNT_WORDS and not known(self.table.units[i])[0]
         values = self.table.rows[np.isfinite(self.table.rows[:, i]), i]
         return named and values.size > 1 and float(np.median(np.diff(values))) == 1.0
 
@@ -130,83 +115,71 @@ class Source:
         """The times of all rows [s], and in words where they are from."""
         table = self.table
         if i is not None and not self.counted(i):
+            name = split(table.names[i])[0]
             if self.rate is not None:
-                raise InvalidValue(
-                    f"rate is {self.rate:g} Hz, but {table.names[i]!r} of {self.path} is its time"
-                )
-            name, written = split(table.names[i])[0], plain(table.units[i])
-            written = written if written in UNITS else plain(name)
-            dimension, size = UNITS.get(written, ("s", 1.0))
+                raise InvalidValue(f"rate is {self.rate:g} Hz, but {name!r} of {self.path} is its time")
+            unit = next((one for one in (table.units[i], name) if known(one)[0]), "s")  # millis, ...
+            dimension, size = known(unit)
             if dimension != "s":
-                raise self.refuse(f"has the unit {written!r} for the time {name!r}: choose another column")
-            return table.rows[:, i] * size, f"over {name!r} in {written if written in UNITS else 's'}"
+                raise self.refuse(f"has the unit {unit!r} for the time {name!r}: choose another column")
+            return table.rows[:, i] * size, f"over {name!r} in {plain(unit)}"
         step, source = table.step, "the step in the file"
         for name, value in table.notes.items():
-            if (found := KHZ.match(value)) and RATES.search(name):
+            if (found := RATE.match(value)) and RATES.search(name) and float(found[1]) > 0.0:
                 step, source = 1.0 / (float(found[1]) * (1e3 if found[2] else 1.0)), f"the note {name!r}"
         if self.rate is not None:
             step, source = 1.0 / self.rate, "the given rate"
         if step is None or not 0.0 < step < math.inf:
             what = "no time" if i is None else f"only the count {table.names[i]!r} for a time"
             raise self.refuse(f"has {what}: give --rate HZ")
-        count: Array = (
-            np.arange(1.0 * len(table.rows)) if i is None else table.rows[:, i] - np.nanmin(table.rows[:, i])
-        )
+        count = np.arange(1.0 * len(table.rows))
+        if i is not None:
+            count = table.rows[:, i] - np.nanmin(table.rows[:, i])
         return table.start + count * step, f"at {source}"
 
     def positive(self, name: str) -> float | None:
         """The number above zero in a note, None if there is no such note."""
-        if name not in self.table.notes:
-            return None
-        number = _float(self.table.notes[name])
-        if not 0.0 < number <= LARGEST:
+        text = self.table.notes.get(name, "")
+        number = float(text) if NUMBER.fullmatch(text) else 0.0
+        if text and not 0.0 < number <= LARGEST:
             valid = f"it must be a number above zero and at most {LARGEST:g}"
-            raise InvalidValue(f"the note {name} of {self.path} is {self.table.notes[name][:40]!r}; {valid}")
-        return number
+            raise InvalidValue(f"the note {name} of {self.path} is {text[:40]!r}; {valid}")
+        return number or None
 
-    def first(self, wrong: NDArray[np.bool_], *places: int | None) -> str:
-        """Line and text of the first row that is wrong."""
-        line = int(self.table.lines[int(np.argmax(wrong))])
-        texts = [
-            self.table.lost.get((line, -1 if i is None else i))
-            for i in places or range(len(self.table.names))
-        ]
-        return f"line {line}, {next((text for text in texts if text is not None), '')!r}"
+    def first(self, lost: NDArray[np.bool_], *columns: int | None) -> str:
+        """Line and text of the first row that is lost, of these columns."""
+        row = int(np.argmax(lost))
+        places = [i for i in columns if i is not None and np.isnan(self.table.rows[row, i])]
+        return f"line {self.table.lines[row]}, {self.table.cell(row, places[0])!r}"
 
     def motion(self) -> Record:
         """The record of one channel over time; rows without a number or with a repeated time are left out."""
         time, value = self.chosen()
-        column, size, written = self.channel(value)
+        column, size, unit = self.channel(value)
         times, over = self.times(time)
-        rows, notes = np.column_stack([times, self.table.rows[:, value] * size]), list[str]()
-        lost, n = np.asarray(np.isnan(rows).any(axis=1)), len(rows)
+        rows, notes, n = np.column_stack([times, self.table.rows[:, value] * size]), list[str](), len(times)
+        lost = np.asarray(np.isnan(rows).any(axis=1))
         if lost.any():
-            count, at = f"{int(np.sum(lost))} of {n} rows", self.first(lost, time, value)
+            count, at = f"{np.sum(lost)} of {n} rows", f"the first is {self.first(lost, time, value)}"
             if np.sum(lost) > 0.5 * n:
-                raise self.refuse(f"has no number in {count}: the first is {at}")
-            notes.append(f"{count} hold no number and are left out: the first is {at}")
+                raise self.refuse(f"has no number in {count}: {at}")
+            notes.append(f"{count} hold no number and are left out: {at}")
         kept = np.flatnonzero(~lost)
         steps = np.diff(times[kept])
-        if np.any(steps < 0.0):
-            i = int(kept[int(np.argmax(steps < 0.0)) + 1])
-            raise self.refuse(
-                f"has the time {times[i]:.12g} s in line {self.table.lines[i]}; times must rise"
-            )
-        if np.any(steps == 0.0):
-            i = int(kept[int(np.argmax(steps == 0.0)) + 1])
-            where = f"the first is line {self.table.lines[i]}"
-            notes.append(
-                f"{int(np.sum(steps == 0.0))} of {n} rows repeat the time before and are left out: {where}"
-            )
-            kept, steps = kept[np.append(True, steps > 0.0)], steps[steps > 0.0]
-        rate = 1.0 / float(np.median(steps)) if steps.size else math.nan
-        name = split(self.table.names[value])[0]
-        said = f"read as {self.table.recognised}: {name!r} in {written} {over}, {len(kept)} rows"
-        said += f" at {rate:.6g} Hz"
-        if self.columns is self.unit is self.rate is None and self.table.names == ("time_s", column):
-            said = ""
-        columns = ("time_s", column)
-        return Record(columns=columns, rows=rows[kept], notes=tuple(notes), reading=said)
+        falls, again = kept[1:][steps < 0.0], kept[1:][steps == 0.0]
+        if falls.size:
+            at = f"{times[falls[0]]:.12g} s in line {self.table.lines[falls[0]]}"
+            raise self.refuse(f"has the time {at}; times must rise")
+        if again.size:
+            at = f"the first is line {self.table.lines[again[0]]}"
+            notes.append(f"{again.size} of {n} rows repeat the time before and are left out: {at}")
+        kept = np.setdiff1d(kept, again)
+        rate = 1.0 / np.median(steps[steps > 0.0]) if len(kept) > 1 else math.nan
+        what = f"{split(self.table.names[value])[0]!r} in {unit} {over}, {len(kept)} rows at {rate:.6g} Hz"
+        record = Record(columns=("time_s", column), rows=rows[kept], notes=tuple(notes))
+        if self.columns is self.unit is self.rate is None and self.table.names == record.columns:
+            return record
+        return replace(record, reading=f"read as {self.table.recognised}: {what}")
 
 
 def read_record(
@@ -219,27 +192,26 @@ def read_record(
     """
     table = read_table(path)
     source, heading = Source(path, table, columns, unit, rate), tuple(name.lower() for name in table.names)
-    drive = [source.positive(name) for name in NOTES]
+    frequency, amplitude = (source.positive(name) for name in NOTES)
     if columns is unit is rate is None and HEADINGS.get(heading, "motion") != "motion":
         record = Record(columns=heading, rows=table.rows)
         lost = np.asarray(np.isnan(table.rows).any(axis=1))
         if lost.any():
-            raise source.refuse(f"has {source.first(lost)}, which is no number")
+            raise source.refuse(f"has {source.first(lost, *range(len(heading)))}, which is no number")
     else:
         record = source.motion()
     _check(record, source)
     first, last = record.rows[[0, -1], 0]
     if record.kind == "motion" and abs(first) > FAR * (last - first):
         record = replace(record, rows=record.rows - [first, 0.0], origin=float(first))
-    return replace(record, frequency=drive[0], amplitude=drive[1])
+    return replace(record, frequency=frequency, amplitude=amplitude)
 
 
 def _check(record: Record, source: Source) -> None:
     """Refuse rows that no record of its kind has."""
     rows, fewest = record.rows, FEWEST[record.kind]
     limits = np.array([LATEST if name == "time_s" else LARGEST for name in record.columns])
-    if (large := np.abs(rows) > limits).any():
-        i, k = (int(one) for one in np.argwhere(large)[0])
+    for i, k in np.argwhere(np.abs(rows) > limits)[:1]:
         valid = f"it must be a number of at most {limits[k]:g} in size"
         raise InvalidValue(f"{record.columns[k]} in row {i + 1} of {source.path} is {rows[i, k]:g}; {valid}")
     if len(rows) < fewest:
@@ -248,8 +220,8 @@ def _check(record: Record, source: Source) -> None:
         what = f"{rows[0, 1]:g} {record.unit} in all rows"
         raise NoAnswer(f"the reading in {source.path} is {what}; a record must move")
     if record.kind == "transitions":
-        wrong = (rows[:, 0] <= 0.0) | (rows[:, 1] % 1 != 0) | (rows[:, 1] < 1) | (rows[:, 2] <= -1.0)
-        wrong |= np.any(rows[:, 3:] <= 0.0, axis=1)
-        if np.any(wrong):
+        right = (rows[:, 0] > 0.0) & (rows[:, 1] % 1 == 0) & (rows[:, 1] >= 1) & (rows[:, 2] > -1.0)
+        right &= np.all(rows[:, 3:] > 0.0, axis=1)
+        if not right.all():
             needs = "a frequency above 0 Hz, a whole period, an excess above -1 and an error above 0"
-            raise InvalidValue(f"row {int(np.argmax(wrong)) + 1} of {source.path} needs {needs}")
+            raise InvalidValue(f"row {int(np.argmin(right)) + 1} of {source.path} needs {needs}")
