@@ -16,6 +16,7 @@ A run and its files
     ``columns``       tables: one value a cell, and the words and the unit of each column
     ``files``         files that are complete or absent; JSON; versions and commit
     ``digits``        numbers in few digits
+    ``tables``        tables of numbers as laboratories write them
 
 Pictures and the page
     ``plotting``      figures in the style of the package

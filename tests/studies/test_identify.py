@@ -149,9 +149,7 @@ def test_what_a_record_cannot_determine_is_refused_in_a_sentence(made, name, kin
 def test_an_orbit_that_ends_inside_the_confidence_region_is_refused(made):
     fold = -1.4773e-3  # of p5, as the main table has it
     orbit = MaximalFamily(oscillator=made["one_mode"], m=5).orbits(fold + 2e-7)[-1]
-    rows = (
-        simulate(orbit.oscillator, orbit.state(), periods=40).strobe_displacement @ orbit.oscillator.model.phi
-    )
+    rows = orbit.oscillator.tip(simulate(orbit.oscillator, orbit.state(), periods=40).strobe_displacement)
     record = replace(synthetic("strobe", made["one_mode"]), rows=rows[:, None], amplitude=orbit.amplitude)
     with pytest.raises(NoAnswer, match=r"changes its impacts|no p5"):
         fit(record.noisy(1, 2e-5), orbit.oscillator, ("free_period", "restitution"))
@@ -173,17 +171,13 @@ def wave(rows, step=5e-4, height=0.01):
 
 
 REFUSED = {
-    "": "is empty; give a table",
-    "hello": "first lines are 'hello'",
     "x_m\n1\nnan\n": "line 3, 'nan', which is no number",
     "x_m\n1\n1e300\n": r"x_m in row 2 .* 1e\+300; .* at most 1e\+06",
     "time_s,x_m\n" + "".join(f"{i},0\n" for i in range(99)): "0 m in all rows",
-    "x_m\n1\n": "1 rows",
     "# frequency_hz = fast\nx_m\n1\n": "note frequency_hz",
     "x_m,v_m_per_s\n1,2\n": "1 rows",
     "frequency_hz,period,excess\n22.2,5.5,0\n": "whole period",
     "frequency_hz,period,excess,error\n22.2,5,0,0\n": "error above 0",
-    wave(300).replace("0.0205,", "0.0199,"): "0.0199 s in line 45; times must rise",
     wave(30): "30 rows",
     wave(2000): "no impact",
     wave(80): "80 rows of 0.89 drive periods; it must have at least 3",
@@ -238,7 +232,7 @@ def test_a_gap_that_no_scene_has_is_refused_before_any_table(run_study, tmp_path
 
 def test_a_wrong_name_is_refused_before_the_fit(run_study, tmp_path):
     (tmp_path / "a.csv").write_text("# frequency_hz = 22.2\nx_m\n" + "1e-3\n2e-3\n" * 9)
-    table = {"T free_period": "each one once", "phasee": "nearest is phase", "phase gap": "only a record of"}
+    table = {"T free_period": "each one once", "phasee": "nearest is phase", "phase gap": "only a motion"}
     for names, said in table.items():
         ran = run_study("identify", str(tmp_path / "a.csv"), "--fit", *names.split())
         assert ran.code == 2 and said in ran.err

@@ -3,11 +3,11 @@
 Claim: a record of a beam that rattles determines its free period, decay rate, gap, restitution and delay, or
 its contact stiffness, each with an error.  Where it cannot separate two of them, the study says so.
 
-A record is a CSV file of one of three kinds, by its heading (studies.measurement.identify.record.records; the
-example makes one of each):
+A record is a file as an instrument wrote it: CSV or text, LabVIEW, WAV, MATLAB, universal file, TDMS
+(docs/guide/records.md).  Its time and one channel are a displacement, velocity or acceleration of the tip.
+Two more kinds of record are known by their heading; the example makes one of each:
 
     x_m[,v_m_per_s]                        strobe points of a settled motion, a row a drive period
-    time_s,x_m                             displacement of the tip relative to the base
     frequency_hz,period,excess[,error]     where p_m is lost as the drive is lowered
 
 The oscillator is that of the scene: Eq. (1) (one_mode), the same with a constant delay (two_parameters), or
@@ -30,7 +30,7 @@ synthetic ones, with 0.5 um of read-out noise, are made and fitted.
     damping             N s/m        of a linear contact (beam)
     dissipation         s/m          of Hunt and Crossley's contact (beam)
     tip_mass            kg           mass at the tip; the free period is a number of its own (beam)
-    phase               rad          phase of the base at time zero; it and the next two need a displacement
+    phase               rad          phase of the base at time zero; it and the next two need a motion
     offset              m            reading of the sensor at equilibrium
     scale               1            reading per displacement
 
@@ -116,11 +116,11 @@ def identify(
     scene: Scene,
     run: Run,
     *,
-    record: Annotated[Path | None, "CSV file; without one, the example", POSITIONAL] = None,
+    record: Annotated[Path | None, "file of the instrument; without one, the example", POSITIONAL] = None,
     fit: Annotated[
         tuple[str, ...],
-        "names to fit, see above; if none is a parameter, the usual ones of this kind of record are fitted; "
-        "if none is phase, offset or scale, phase and offset of a displacement are",
+        "names to fit, see above; other parameters keep the values of the scene (default: the usual ones). "
+        "Phase and offset of a motion are fitted, unless phase, offset or scale is named",
     ] = (),
     description: Annotated[Description, "the oscillator"] = "one_mode",
     drive: Annotated[
@@ -130,7 +130,7 @@ def identify(
     ] = None,
     noise_um: Annotated[
         float | None,
-        "noise of the read-out, where it is known; of a velocity per s, of an acceleration per s²",
+        "noise of the read-out, where it is known; for a velocity in µm/s, for an acceleration in µm/s²",
         Within(0, 1e9, "µm", open=True),
     ] = None,
     delay_ms: Annotated[
@@ -147,7 +147,7 @@ def identify(
     ] = None,
     frame: Annotated[
         Literal["base", "ground"] | None,
-        "where the sensor of a motion stands (default: base; for accelerations ground)",
+        "what the reading of a motion is relative to (default: base; of an acceleration ground)",
     ] = None,
     next: Annotated[tuple[str, ...], "parameters of the next measurement (example: T tau delay)"] = (),
 ) -> Mapping[str, object]:
@@ -232,7 +232,7 @@ def in_frame(record: Record, frame: str | None, run: Run) -> Record:
     if record.reading:
         run.say(record.reading)
         if frame is None:
-            run.say(f"the sensor is taken to stand on the {usual}: --frame {other} changes gap and amplitude")
+            run.say(f"taken as relative to the {usual}; if not, give --frame {other}: gap and amplitude differ")
     if record.origin:
         run.say(f"the stamps begin at {record.origin:.15g} s: 0 is the first row")
     return replace(record, ground=(frame or usual) == "ground")

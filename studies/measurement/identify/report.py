@@ -146,11 +146,13 @@ def notes_of(found: Fit) -> list[str]:
         both = f"{1e3 * fitted:.4g} mm contradicts the given {1e3 * given:.4g} mm"
         notes.append(f"the fitted amplitude of {both}")
     if record.kind == "motion":
+        if m := found.problem.prediction.m:
+            notes.append(f"the motion is p{m}: it repeats after {m} drive period{'s' * (m > 1)}")
         times, period = record.rows[:, 0], found.oscillator.period
         rows = period / float(np.median(np.diff(times)))
         if abs(rows - round(rows)) * (times[-1] - times[0]) < period:
-            why = f"{round(rows)} rows a drive period, so that all impacts lie alike between two of them"
-            notes.append(f"{why}: errors of gap, restitution and delay are too small; record at another rate")
+            why = f"about {round(rows)} rows a drive period: impacts lie at one place between two of them"
+            notes.append(f"{why}, so that errors of the contact may be too small; record at another rate")
     return notes
 
 
