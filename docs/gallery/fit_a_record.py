@@ -44,7 +44,7 @@ for name, value, error in zip(fitted.names, fitted.estimate, fitted.errors, stri
     print(f"{name:12} {value:11.4g} ± {error:.1g}")  # in SI units
 
 # %%
-# The residuals look like the noise of the sensor: the model is large enough.
+# The residuals scatter by 5 µm, the noise of the sensor: the model is large enough.
 time, x = record.rows[:1000].T
 figure, (above, below) = plt.subplots(2, 1, sharex=True, figsize=(7.5, 4.8), layout="constrained")
 above.plot(time, 1e3 * x, ".", color="0.7")
@@ -55,6 +55,6 @@ below.set(xlabel="time (s)", ylabel="record less fit (µm)")
 plt.show()
 
 # %%
-# The orbit is p4.  When the drive amplitude is lowered, it is lost at its fold.
+# The motion repeats after four drive periods: it is p4.  When the drive is lowered, p4 is lost at its fold.
 predicted, true = (MaximalFamily(oscillator=one, m=4).fold() for one in (fitted.oscillator, bench))
 print(f"p4 is lost at {1e3 * predicted.amplitude:.4f} mm (true: {1e3 * true.amplitude:.4f} mm)")

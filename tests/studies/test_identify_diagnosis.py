@@ -276,7 +276,7 @@ def test_a_scale_is_found_where_the_gap_or_the_amplitude_is_held(scene_of_eq1, s
         assert found.estimate[-1] == pytest.approx(-0.85, abs=4.0 * found.errors[-1])
     rows = [Profile("gap", value, "decay_rate", value, value) for value in (1.0, 2.0)]
     drawn = figure.draw(found, rows, {name: "1(1)" for name in found.names})
-    assert drawn.legends[0].get_texts()[-1].get_text() == "other parameter, fitted again"
+    assert drawn.legends[0].get_texts()[-1].get_text() == "decay rate, fitted again"
     run, _ = found.problem.prediction.run(*found.problem.at(found.unknowns))
     assert sum(line.get_label()[:6] == "impact" for line in drawn.axes[0].lines) == 2 * len(run.impacts)
     for side in drawn.axes[-2:]:  # an axis has the colour of its curve

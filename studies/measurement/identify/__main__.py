@@ -232,7 +232,9 @@ def in_frame(record: Record, frame: str | None, run: Run) -> Record:
     if record.reading:
         run.say(record.reading)
         if frame is None:
-            run.say(f"taken as relative to the {usual}; if not, give --frame {other}: gap and amplitude differ")
+            run.say(
+                f"taken as relative to the {usual}; if not, give --frame {other}: gap and amplitude differ"
+            )
     if record.origin:
         run.say(f"the stamps begin at {record.origin:.15g} s: 0 is the first row")
     return replace(record, ground=(frame or usual) == "ground")

@@ -26,18 +26,17 @@ CAPTION = (
 )
 ORBITS, SHOWN, STROBES = 2, 6, 3  # orbits, drive periods of other motions, and periods of strobes shown
 FINE, DOTS, FEW = 200, 150, 200  # times of a curve; rows shown at most; rows with large dots at most
-MANY, APART = 10.0, 3  # ratio of widths from which on their scale is logarithmic; decades of a label more
 DARK, SMALL, CELLS = 0.6, 5.5, 5  # correlation of a dark cell; size of its digits [pt]; least cells a side
 READINGS = {"x_m": ("displacement", 1e3, "mm", 1e6, "µm"), "v_m_per_s": ("velocity", 1.0, "m/s", 1e3, "mm/s")}
 READINGS |= {"a_m_per_s2": ("acceleration", 1.0, "m/s²", 1.0, "m/s²")}
 READINGS |= dict.fromkeys(("excess", "error"), ("excess at the end of $p_m$", 1e2, "%", 1e2, "%"))
 """Last column -> name, scale and unit of the readings, scale and unit of the residuals."""
 OVER = {"phase": " / 2π", "offset": " / range"}  # what an interval of a number that may be zero is divided by
-RISE, AGAIN = "rise of $\\chi^2$", "other parameter, fitted again"
+RISE = "rise of $\\chi^2$"
 BLUE: plotting.Style = {"color": plotting.BLUE, "linestyle": "none", "markerfacecolor": "none"}
 PALE: plotting.Style = {"color": plotting.tint(plotting.BLUE, 0.5)}
 HIT: plotting.Style = {"marker": 7, "color": plotting.VERMILION, "linestyle": "none", "clip_on": False}
-HIT |= {"label": "impact of the fit"}
+HIT |= {"label": "impact in the fitted motion"}
 NOTE: plotting.Style = {"textcoords": "offset points", "fontsize": plotting.NOTE}
 
 
@@ -45,7 +44,8 @@ NOTE: plotting.Style = {"textcoords": "offset points", "fontsize": plotting.NOTE
 def draw(one: Fit, rows: Sequence[Profile], values: Mapping[str, str], title: str = "") -> Figure:
     """Four panels; `rows` are of profiles, the first of the one that is drawn, `values` printed estimates."""
     figure, axes = plotting.new_figure(2, 2, width=plotting.PAGE, height=0.14)
-    words = "Record and fit", "Residuals", "90 % intervals", "Profile" if rows else "Correlations"
+    traded = f"{rows[0].parameter} against {rows[0].other}".replace("_", " ") if rows else "correlations"
+    words = "Record and fit", "Residuals", "90 % intervals", traded.capitalize()
     for k, axis in enumerate(axes.flat):
         plotting.panel(axis, k, words[k])
     _record(axes[0, 0], axes[0, 1], one)
@@ -119,29 +119,23 @@ def _motion(axis: Axes, one: Fit, prediction: Displacement, scale: float, second
 
 
 def _intervals(axis: Axes, one: Fit, values: Mapping[str, str]) -> None:
-    """A row a parameter: its name and printed value, and the 90 % interval about the estimate."""
+    """A row a parameter: its name and printed value, and how far the ends of its interval are from it."""
     sizes = dict(zip(one.names, np.where(one.estimate, np.abs(one.estimate), one.errors), strict=True))
     sizes |= {"phase": 2.0 * math.pi, "offset": float(np.ptp(one.record.observed))}
     names = [f"{name.replace('_', ' ')}{OVER.get(name, '')}  {values[name]}" for name in one.names]
-    ends = 100.0 * (one.intervals().T - one.estimate).T / np.array([[sizes[name]] for name in one.names])
-    half = np.abs(np.where(np.isfinite(ends), ends, 0.0)).max(axis=1)
-    widest, least, row = half.max(), half[half > 0.0].min(), np.arange(half.size)
-    limit = 1.2 * widest
-    if widest > MANY * least:
-        first, last = math.floor(math.log10(least)), math.ceil(math.log10(widest))
-        limit, decades = 10.0**last, 10.0 ** np.arange(first, last + 1)
-        axis.set_xscale("symlog", linthresh=decades[0])
-        shown = decades[[-1, (last - first - 1) // 2][: 1 + (last - first >= APART)]]
-        axis.set_xticks(ticks := [*-shown, 0.0, *shown], map(written, ticks))
-        axis.set_xticks([*-decades, *decades], minor=True)
-    axis.hlines(row, *np.clip(ends, -limit, limit).T, color=plotting.BLUE, linewidth=1.6)
-    for i, k in np.argwhere(~np.isfinite(ends)):
-        axis.plot([-limit, limit][k], i, "<>"[k], color=plotting.BLUE, clip_on=False)
-    axis.plot(0.0 * row, row, "ko", markersize=2.6, label="estimate")
-    axis.axvline(0.0, **plotting.GUIDE)
-    axis.set(xlim=(-limit, limit), ylim=(row.size - 0.4, -0.6))
+    away = 100.0 * np.abs(one.intervals().T - one.estimate) / [sizes[name] for name in one.names]
+    row, finite = np.arange(len(names)), away[np.isfinite(away) & (away > 0.0)]
+    first, last = math.floor(math.log10(finite.min())), math.ceil(math.log10(finite.max()))
+    limits = 10.0 ** np.array([first - 0.1, max(last, first + 1) + 0.1])
+    axis.set_xscale("log")
+    for side, mark, words in zip(np.clip(away, *limits), "<>", ("lower end", "upper end"), strict=True):
+        axis.plot(side, row, mark, color=plotting.BLUE, mfc="none", ms=4.0, clip_on=False, label=words)
+    axis.hlines(row, limits[0], limits[1], color="0.85", linewidth=0.5, zorder=0)
+    axis.set(xlim=limits, ylim=(row.size - 0.4, -0.6))
+    axis.set_xticks(ticks := 10.0 ** np.arange(first, last + 1, 1 + (last - first) // 4), map(written, ticks))
+    axis.minorticks_off()
     axis.set_yticks(row, names, fontsize=min(plotting.NOTE, 56.0 / row.size))
-    plotting.label(axis.xaxis, "distance from estimate", "% of it")
+    plotting.label(axis.xaxis, "from the value to either end", "% of it")
 
 
 def _profile(axis: Axes, one: Fit, own: Sequence[Profile]) -> None:
@@ -149,11 +143,12 @@ def _profile(axis: Axes, one: Fit, own: Sequence[Profile]) -> None:
     other, known, names = axis.twinx(), parameters_of(one.oscillator), (own[0].parameter, own[0].other)
     held, first = np.unique([row.value for row in own], return_index=True)
     rise, values = np.array([(max(own[i].depth, 0.0), own[i].other_value) for i in first]).T
+    again = f"{names[1].replace('_', ' ')}, fitted again"
     scale, unit = prefixed(float(np.abs(held).max()), known[names[0]].unit)
     size, another = prefixed(float(np.abs(values).max()), known[names[1]].unit)
     at, root = np.linspace(held[0], held[-1], FINE), np.sign(held - held[rise.argmin()]) * np.sqrt(rise)
     curves = PchipInterpolator(held, root)(at) ** 2, PchipInterpolator(held, values / size)(at)
-    for k, (side, points, words) in enumerate(((axis, rise, RISE), (other, values / size, AGAIN))):
+    for k, (side, points, words) in enumerate(((axis, rise, RISE), (other, values / size, again))):
         look = plotting.series(k + 1)
         side.plot(at / scale, curves[k], color=look["color"], linestyle=look["linestyle"])
         side.plot(held / scale, points, **look | {"linestyle": "none"}, label=words)

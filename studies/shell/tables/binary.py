@@ -86,6 +86,7 @@ def _tdms(data: bytes) -> Table:
     return _table(channels, "TDMS file", about.get("wf_increment"), float(about.get("wf_start_offset", 0.0)))
 
 
+MISSING = {"pyuff": needs("a universal file", "pyuff"), "nptdms": needs("a TDMS file", "npTDMS")}
 READERS: Mapping[bytes, Callable[[bytes], Table]] = {
     rb"\x1f\x8b": lambda data: _content(gzip.decompress(data)),
     rb"RIFF": _wav,
@@ -122,7 +123,7 @@ def _content(data: bytes) -> Table:
     except InvalidValue:
         raise
     except ImportError as error:
-        raise InvalidValue(f"cannot be read: {needs('it', error.name or '')} (the extra records)") from error
+        raise InvalidValue(f"cannot be read: {MISSING[error.name or '']} (the extra records)") from error
     except Exception as error:  # of a package: the file is cut short, or damaged
         raise InvalidValue(f"is damaged: {str(error)[:80] or type(error).__name__}") from error
 
