@@ -21,7 +21,7 @@ from studies.shell.scene import beam_at, read_scene
 
 QUICK = {"equation_1": (24, 28, 45), "two_modes": (5,)}
 """Records of p1 to p6 that determine all parameters and are soon fitted.  The drive is known for even seeds;
-most have noise above 0.2 % of the gap.  Orbits with two touches (9, 22) are read as other quantities below."""
+most have noise above 0.2 % of the gap.  Orbits with two touches (9, 22) are read otherwise below."""
 
 
 @pytest.mark.parametrize(("kind", "seeds"), [*QUICK.items(), *slow(*((kind, range(30)) for kind in QUICK))])

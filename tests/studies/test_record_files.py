@@ -2,6 +2,7 @@
 
 import gzip
 import io
+import math
 import re
 import sys
 import time
@@ -187,6 +188,36 @@ def test_what_cannot_be_read_is_refused_in_a_sentence(tmp_path, case):
     with pytest.raises(InvalidValue, match=said) as refusal:
         read(tmp_path, content, **options)
     assert "\n" not in str(refusal.value)
+
+
+def wave(rows, step=5e-4, height=0.01):
+    lines = [f"{step * i:.8g},{height * math.sin(2 * math.pi * 22.2 * step * i):.9g}" for i in range(rows)]
+    return "\n".join(["# frequency_hz = 22.2", "# amplitude_m = 2e-3", "time_s,x_m", *lines])
+
+
+POOR = {
+    "x_m\n1\nnan\n": "line 3, 'nan', which is no number",
+    "x_m\n1\n1e300\n": r"x_m in row 2 .* 1e\+300; .* at most 1e\+06",
+    "time_s,x_m\n" + "".join(f"{i},0\n" for i in range(99)): "0 m in all rows",
+    "# frequency_hz = fast\nx_m\n1\n": "note frequency_hz",
+    "x_m,v_m_per_s\n1,2\n": "1 rows",
+    "frequency_hz,period,excess\n22.2,5.5,0\n": "whole period",
+    "frequency_hz,period,excess,error\n22.2,5,0,0\n": "error above 0",
+    wave(30): "30 rows",
+    wave(2000): "no impact",
+    wave(80): "80 rows of 0.89 drive periods; it must have at least 3",
+    "# frequency_hz = 22.2\nx_m\n" + "1e-3\n2e-3\n" * 9: "amplitude of the base",
+    "# amplitude_m = 2e-3\nx_m\n" + "1e-3\n2e-3\n" * 9: "--drive",
+    "# frequency_hz = 22.2\n# amplitude_m = 2e-3\nx_m\n" + "1e-3\n" * 9: "no impact",
+}
+
+
+@pytest.mark.parametrize("text", POOR)
+def test_a_file_that_is_no_record_or_a_poor_one_is_refused_in_a_sentence(run_study, tmp_path, text):
+    (tmp_path / "a.csv").write_text(text)
+    ran = run_study("identify", str(tmp_path / "a.csv"))
+    code = 3 if any(words in POOR[text] for words in ("all rows", "no impact", "at least 3")) else 2
+    assert ran.code == code and re.search(POOR[text], ran.err) and ran.err.count("\n") == 1, ran.err
 
 
 def written(writer, *values):

@@ -128,11 +128,11 @@ def _intervals(axis: Axes, one: Fit, values: Mapping[str, str]) -> None:
     first, last = math.floor(math.log10(finite.min())), math.ceil(math.log10(finite.max()))
     limits = 10.0 ** np.array([first - 0.1, max(last, first + 1) + 0.1])
     axis.set_xscale("log")
-    for side, mark, words in zip(np.clip(away, *limits), "<>", ("lower end", "upper end"), strict=True):
+    for side, mark, words in zip(np.clip(away, *limits), "<>", ("lower, ▷ upper end", "_"), strict=True):
         axis.plot(side, row, mark, color=plotting.BLUE, mfc="none", ms=4.0, clip_on=False, label=words)
     axis.hlines(row, limits[0], limits[1], color="0.85", linewidth=0.5, zorder=0)
     axis.set(xlim=limits, ylim=(row.size - 0.4, -0.6))
-    axis.set_xticks(ticks := 10.0 ** np.arange(first, last + 1, 1 + (last - first) // 4), map(written, ticks))
+    axis.set_xticks(ticks := 10.0 ** np.arange(first, last + 1, 1 + (last - first) // 3), map(written, ticks))
     axis.minorticks_off()
     axis.set_yticks(row, names, fontsize=min(plotting.NOTE, 56.0 / row.size))
     plotting.label(axis.xaxis, "from the value to either end", "% of it")
