@@ -1,6 +1,7 @@
 """The rows of a fit: estimates with errors and intervals, and the quality of the fit."""
 
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from itertools import combinations
 from typing import Annotated, Any
@@ -11,13 +12,20 @@ from studies.measurement.identify import figure
 from studies.measurement.identify.fit.profiles import Profile, rows_of
 from studies.measurement.identify.fit.result import Fit
 from studies.measurement.identify.motion.displacement import UNITS
+from studies.physics.calibration import calibrate
 from studies.physics.parameters import fitted_scene, parameters_of
 from studies.shell.digits import minus, prefixed, written
 from studies.shell.run import Run
-from studies.shell.scene import Scene
+from studies.shell.scene import Scene, SceneError
 
 TRADE, NOTABLE = 0.95, 0.5  # correlations from which on two parameters trade off, or are shown
 MOST = 10  # correlations that are shown
+OF_EQUATION_1 = (
+    "single_mode.free_period_s",
+    "single_mode.decay_rate_per_s",
+    "single_mode.restitution",
+    "stop.gap_m",
+)
 UNLIKE = 2.0  # ratio of a fitted amplitude to a given one that contradicts it; clamped beams: 1.57
 SHOWN = ("record", "parameter", "value", "interval", "began", "in_scene")  # columns on the terminal
 
@@ -157,9 +165,22 @@ def notes_of(found: Fit) -> list[str]:
 
 
 def as_scene(scene: Scene, found: Fit) -> Scene:
-    """The scene with the fitted oscillator."""
+    """The scene with the fitted oscillator.
+
+    The modes of a fitted beam are measured ones.  After a fit of one mode a drawn spring stays: its sheet and
+    tape give mode 1 the fitted period and decay rate, so that every study has a beam.  If no sheet and tape
+    do, the mode is a measured one.
+    """
     several = sorted(set(found.record.rows[:, 0])) if found.record.kind == "transitions" else []
-    return fitted_scene(scene, found.oscillator, several or [found.oscillator.driven.frequency])
+    fitted = fitted_scene(scene, found.oscillator, several or [found.oscillator.driven.frequency])
+    if found.oscillator.n_modes == 1 and scene.spring.kind != "modal_data":
+        own = fitted.single_mode
+        with suppress(SceneError):
+            drawn = calibrate(scene, free_period_s=own.free_period_s, decay_rate_per_s=own.decay_rate_per_s)
+            numbers: dict[str, object] = {key: fitted.number(key) for key in OF_EQUATION_1}
+            numbers["drive.frequencies_hz"] = list(fitted.drive.frequencies_hz)
+            return drawn.replace(numbers, provenance="fitted")
+    return fitted
 
 
 def report(run: Run, found: Mapping[str, Fit]) -> dict[str, Any]:
