@@ -33,7 +33,7 @@ def prefixed(size: float, unit: str) -> tuple[float, str]:
 def in_unit(value: float, unit: str, digits: int = 4) -> str:
     """A number with its unit, as a person writes them: 0.02 mm."""
     scale, words = prefixed(abs(value), unit)
-    return f"{value / scale:.{digits}g} {words}"
+    return f"{written(value / scale, digits)} {words}"
 
 
 def minus(text: str) -> str:

@@ -196,7 +196,7 @@ def test_a_gap_that_no_scene_has_is_refused_before_any_table(run_study, tmp_path
     for more in ((), ("--set", "stop.gap_m=0.009")):
         ran = run_study("identify", str(tmp_path / "a.csv"), "--fit", "gap", "tau", "amplitude", *more)
         assert ran.code == 2 and not ran.folder.exists(), ran.err
-        assert re.fullmatch(".*micrometres: divide by 1e6.*\n", ran.err), ran.err
+        assert re.fullmatch(".*a factor of 1e6, so one of the two is in micrometres\n", ran.err), ran.err
 
 
 def test_a_wrong_name_is_refused_before_the_fit(run_study, tmp_path):

@@ -2,20 +2,24 @@
 
 import math
 import pickle
+import re
 from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from oscillators import slow
+from oscillators import modes_on_stop, newton, slow
 from page_judge import in_both_styles
 from record_information import judged_by_information, truth_of
 from record_simulators import draw, reading
 from record_trials import begun, trial_of
 
+from contact import State, simulate
 from studies.measurement.identify import figure
+from studies.measurement.identify.fit.diagnosis import contradictions
 from studies.measurement.identify.fit.search import fit
 from studies.measurement.identify.record.records import CHANNELS, NoAnswer, Record, synthetic
+from studies.measurement.identify.record.soundness import defects, drive_found
 from studies.measurement.identify.report import estimates_of, traded
 from studies.shell.scene import beam_at, read_scene
 
@@ -97,6 +101,45 @@ def test_a_velocity_or_an_acceleration_is_compared_as_it_was_read(records):
         assert np.abs(off).max() < 5.0 and found.noise == pytest.approx(noise, rel=0.2)
         assert 0.85 * len(record.time) < len(found.record.rows) < len(record.time)
     assert len(refused) <= len(records) / 6, refused
+
+
+def wave(rows, step=5e-4, height=0.01):
+    lines = [f"{step * i:.8g},{height * math.sin(2 * math.pi * 22.2 * step * i):.9g}" for i in range(rows)]
+    return "\n".join(["# frequency_hz = 22.2", "# amplitude_m = 2e-3", "time_s,x_m", *lines])
+
+
+POOR = {
+    "x_m\n1\nnan\n": "line 3, 'nan', which is no number",
+    "x_m\n1\n1e300\n": r"x_m in row 2 .* 1e\+300; .* at most 1e\+06",
+    "time_s,x_m\n" + "".join(f"{i},0\n" for i in range(99)): "0 m in all rows",
+    "# frequency_hz = fast\nx_m\n1\n": "note frequency_hz",
+    "x_m,v_m_per_s\n1,2\n": "1 rows",
+    "frequency_hz,period,excess\n22.2,5.5,0\n": "whole period",
+    "frequency_hz,period,excess,error\n22.2,5,0,0\n": "error above 0",
+    wave(30): "30 rows",
+    wave(2000): "no impact",
+    wave(80): "80 rows of 0.89 drive periods; it must have at least 3",
+    "# frequency_hz = 22.2\nx_m\n" + "1e-3\n2e-3\n" * 9: "amplitude of the base",
+    "# amplitude_m = 2e-3\nx_m\n" + "1e-3\n2e-3\n" * 9: "--drive",
+    "# frequency_hz = 22.2\n# amplitude_m = 2e-3\nx_m\n" + "1e-3\n" * 9: "no impact",
+}
+
+
+@pytest.mark.parametrize("text", POOR)
+def test_a_file_that_is_no_record_or_a_poor_one_is_refused_in_a_sentence(run_study, tmp_path, text):
+    (tmp_path / "a.csv").write_text(text)
+    ran = run_study("identify", str(tmp_path / "a.csv"))
+    code = 3 if any(words in POOR[text] for words in ("all rows", "no impact", "at least 3")) else 2
+    assert ran.code == code and re.search(POOR[text], ran.err) and ran.err.count("\n") == 1, ran.err
+
+
+def test_chaos_has_no_defect_and_does_not_repeat():
+    oscillator = modes_on_stop(154.0, 3.56, 1.0, 1.0, law=newton(0.15), drive=(22.4, 1e-3)).with_excess(0.2)
+    start, t = State(time=0.0, displacement=np.zeros(1), velocity=np.zeros(1)), np.arange(3000) / 2000.0
+    values = oscillator.tip(simulate(oscillator, start, periods=120, times=3.0 + t).displacement)
+    assert defects(t, values, 22.4) == [] and drive_found(t, values, 22.4) is None
+    said = contradictions(t, values, values - values.mean(), 22.4, 0)
+    assert said == ["the record does not repeat within 12 drive periods"]
 
 
 def test_no_answer_leaves_a_process_as_itself():

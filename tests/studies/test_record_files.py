@@ -2,7 +2,6 @@
 
 import gzip
 import io
-import math
 import re
 import sys
 import time
@@ -144,6 +143,24 @@ def test_a_row_without_a_number_is_left_out_and_counted(tmp_path, text):
     assert len(record.notes) == 1 and re.search(said, record.notes[0])
 
 
+def test_rounded_stamps_midnight_and_columns_that_hold_words(tmp_path):
+    """Columns have the numbers that they have in the file; a rate replaces its times."""
+    rounded = [f"{round(0.64 * i):d},{1e3 * x:.9g}" for i, x in enumerate(MOTION)]
+    record = read(tmp_path, "millis,x_mm\n" + "\n".join(rounded))
+    assert np.diff(record.rows[:, 0]) == pytest.approx(6.4e-4, rel=1e-3) and len(record.rows) == 200
+    assert re.search(
+        "stamps are multiples of 0.001 s: rows are taken as evenly spaced by 0.00063995", record.notes[0]
+    )
+    late = [
+        f"{'23:59:59' if i < 100 else '00:00:00'}.{(900 + i) % 1000:03d},{1e3 * x:.9g}"
+        for i, x in enumerate(MOTION)
+    ]
+    same(read(tmp_path, "time,x_mm\n" + "\n".join(late)))
+    noted = [row.replace(",", ",ok,") for row in ROWS]
+    same(read(tmp_path, "t,note,x_mm\n" + "\n".join(noted), columns="1,3"))
+    same(read(tmp_path, GERMAN.replace("Zeit [s]", "Zeit [ms]"), rate=1000.0))
+
+
 def test_a_cell_of_a_wide_file_is_shown_however_many_were_lost_before(tmp_path):
     rows = (f"{row}{30 * (',1' if i % 2 else ',--')}\n" for i, row in enumerate(ROWS))
     text = "t,x_mm" + "".join(f",y{i}" for i in range(30)) + "\n" + "".join(rows)
@@ -167,8 +184,11 @@ UNTIDY = [  # content, what the user says of it, the refusal
     ("millis,raw\n" + body(), {}, "no unit for the channel 'raw': give --unit mm, .*--unit 1=5e-3 m"),
     (body(), {}, "no unit for the channel 'column 2'"),
     ("x (mm)\n" + rows_of("{x}"), {}, "has no time: give --rate HZ"),
-    (GERMAN, {"rate": 5.0}, "rate is 5 Hz, but 'Zeit' of .* is its time"),
     (IMU.replace("sample_rate_hz", "gain"), {"unit": "g"}, "only the count 'count' for a time: give --rate"),
+    ("time (fortnight),x (mm)\n" + body(), {}, "the unit 'fortnight' for the time 'time'; it must be s, ms"),
+    ("t,x_m,x_m\n" + body(end=",1"), {"columns": "t,x_m"}, r"several columns 'x_m': choose by number, \["),
+    (IN_VOLT, {"unit": "mV=1mm"}, "has the unit 'V', but unit is 'mV=1mm'"),
+    ("time,x (mm)\n" + rows_of("10:00:00,{x}"), {}, "199 of 200 rows that repeat .* give --rate HZ"),
     (IMU, {}, "no unit for the channel 'a_z'"),
     (changed(101, "0.05,1"), {}, "the time 0.05 s in line 101; times must rise"),
     ("\n".join(["t,x_mm", *HALF]), {}, "no number in 104 of 200 rows: the first is line 3, 'OVER'"),
@@ -190,36 +210,6 @@ def test_what_cannot_be_read_is_refused_in_a_sentence(tmp_path, case):
     assert "\n" not in str(refusal.value)
 
 
-def wave(rows, step=5e-4, height=0.01):
-    lines = [f"{step * i:.8g},{height * math.sin(2 * math.pi * 22.2 * step * i):.9g}" for i in range(rows)]
-    return "\n".join(["# frequency_hz = 22.2", "# amplitude_m = 2e-3", "time_s,x_m", *lines])
-
-
-POOR = {
-    "x_m\n1\nnan\n": "line 3, 'nan', which is no number",
-    "x_m\n1\n1e300\n": r"x_m in row 2 .* 1e\+300; .* at most 1e\+06",
-    "time_s,x_m\n" + "".join(f"{i},0\n" for i in range(99)): "0 m in all rows",
-    "# frequency_hz = fast\nx_m\n1\n": "note frequency_hz",
-    "x_m,v_m_per_s\n1,2\n": "1 rows",
-    "frequency_hz,period,excess\n22.2,5.5,0\n": "whole period",
-    "frequency_hz,period,excess,error\n22.2,5,0,0\n": "error above 0",
-    wave(30): "30 rows",
-    wave(2000): "no impact",
-    wave(80): "80 rows of 0.89 drive periods; it must have at least 3",
-    "# frequency_hz = 22.2\nx_m\n" + "1e-3\n2e-3\n" * 9: "amplitude of the base",
-    "# amplitude_m = 2e-3\nx_m\n" + "1e-3\n2e-3\n" * 9: "--drive",
-    "# frequency_hz = 22.2\n# amplitude_m = 2e-3\nx_m\n" + "1e-3\n" * 9: "no impact",
-}
-
-
-@pytest.mark.parametrize("text", POOR)
-def test_a_file_that_is_no_record_or_a_poor_one_is_refused_in_a_sentence(run_study, tmp_path, text):
-    (tmp_path / "a.csv").write_text(text)
-    ran = run_study("identify", str(tmp_path / "a.csv"))
-    code = 3 if any(words in POOR[text] for words in ("all rows", "no impact", "at least 3")) else 2
-    assert ran.code == code and re.search(POOR[text], ran.err) and ran.err.count("\n") == 1, ran.err
-
-
 def written(writer, *values):
     file = io.BytesIO()
     writer(file, *values)
@@ -228,7 +218,10 @@ def written(writer, *values):
 
 def test_binary_files_and_encodings(tmp_path):
     whole, single = np.rint(1e6 * MOTION).astype(np.int16), (50 * MOTION).astype("f4")
-    same(read(tmp_path, written(wavfile.write, 1000, whole), unit="1=1e-6 m"), within=1e-6)
+    same(read(tmp_path, written(wavfile.write, 1000, whole), unit=f"1={2**15}e-6 m"), within=1e-6)
+    cut = written(wavfile.write, 1000, whole)[:200]
+    with pytest.raises(InvalidValue, match="is damaged: Reached EOF"):
+        read(tmp_path, cut, unit="mm")
     same(read(tmp_path, written(wavfile.write, 1000, single), unit="1=20 mm"), within=1e-9)
     same(read(tmp_path, written(savemat, {"t": TIMES, "x_m": MOTION})))
     same(read(tmp_path, written(savemat, {"fs": 1000.0, "x_mm": 1e3 * MOTION[:, None]})))

@@ -55,7 +55,7 @@ from typing import Annotated, Literal
 from beam import InvalidValue, Refusal
 from contact import ImpactOscillator
 from studies import letter
-from studies.measurement.identify.fit.diagnosis import contradictions, wanders
+from studies.measurement.identify.fit.diagnosis import contradictions
 from studies.measurement.identify.fit.result import Fit
 from studies.measurement.identify.fit.search import fit as fitted
 from studies.measurement.identify.motion.displacement import SENSOR
@@ -248,7 +248,8 @@ def answered(one: Fit) -> Fit:
     if one.record.kind == "motion":
         (times, values), residuals = one.record.rows.T, one.residuals[:, 0]
         frequency, period = one.oscillator.driven.frequency, one.problem.prediction.m
-        why = wanders(times, values, residuals, frequency)
-        why += contradictions(times, values, residuals, frequency, period, one.record.order)
+        why = contradictions(times, values, residuals, frequency, period, one.record.order)
+    if one.noise_known:
+        why.append(one.against_noise)
     reason = "; ".join([*dict.fromkeys(why)][:2])
     raise NoAnswer(f"{reason}; the best values found, of unknown error, are {without_errors(one)}")

@@ -20,6 +20,7 @@ from studies.shell.scene import Scene, SceneError
 
 TRADE, NOTABLE = 0.95, 0.5  # correlations from which on two parameters trade off, or are shown
 MOST = 10  # correlations that are shown
+LESS = 0.7  # residuals over the given noise, below which it is too large
 OF_EQUATION_1 = (
     "single_mode.free_period_s",
     "single_mode.decay_rate_per_s",
@@ -153,6 +154,8 @@ def notes_of(found: Fit) -> list[str]:
     if given and fitted and not 1.0 / UNLIKE < fitted / given < UNLIKE:
         both = f"{1e3 * fitted:.4g} mm contradicts the given {1e3 * given:.4g} mm"
         notes.append(f"the fitted amplitude of {both}")
+    if found.noise_known and record.kind == "motion" and found.residuals.std() < LESS * found.noise:
+        notes.append(f"{found.against_noise}: the errors are too large")
     if record.kind == "motion":
         if m := found.problem.prediction.m:
             notes.append(f"the motion is p{m}: it repeats after {m} drive period{'s' * (m > 1)}")

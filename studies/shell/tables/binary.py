@@ -23,7 +23,7 @@ REFUSED = {
     rb"\x89PNG": "a PNG picture: give the numbers behind it as CSV",
     rb"%PDF": "a PDF document: give the numbers in it as CSV",
     rb"\xd0\xcf\x11\xe0|PK\x03\x04(?s:.{0,4000})xl/": "an Excel workbook: save its sheet as CSV",
-    rb"PK\x03\x04": "a zip archive: give one of the files in it",
+    rb"PK\x03\x04": "a zip archive or an Excel workbook: give the file in it, or save its sheet as CSV",
     rb"MATLAB 7\.3|\x89HDF": "an HDF5 file: from MATLAB, save it with -v7, else as CSV",
 }
 
@@ -37,12 +37,17 @@ def _table(channels: Channels, recognised: str, step: float | None = None, start
     rows = np.array([values for values, _ in kept.values()], dtype=float).T
     rows[~np.isfinite(rows)] = np.nan
     units = tuple(unit or split(name)[1] for name, (_, unit) in kept.items())
-    return Table(tuple(kept), units, rows, np.arange(1, longest + 1), recognised, step=step, start=start)
+    lines, places = np.arange(1, longest + 1), tuple(range(len(kept)))
+    return Table(tuple(kept), units, rows, lines, recognised, places, step=step, start=start)
 
 
 def _wav(data: bytes) -> Table:
     with warnings.catch_warnings(action="ignore"):  # there are chunks that are no samples
+        warnings.filterwarnings("error", message="Reached EOF")
         rate, values = wavfile.read(io.BytesIO(data))
+    if values.dtype.kind in "iu":  # full scale is 1, as in a file of floats
+        half = 2.0 ** (8 * values.dtype.itemsize - 1)
+        values = values / half - (values.dtype.kind == "u")
     channels = enumerate(values.reshape(len(values), -1).T, 1)
     return _table({f"channel {i}": (one, "") for i, one in channels}, "WAV file", 1.0 / rate)
 

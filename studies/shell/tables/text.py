@@ -33,8 +33,9 @@ class Table:
     """A table as it was found; `rows` of shape (n_rows, n_columns) are NaN where a cell is no finite number.
 
     `names` and `units` are as written: "column 1", ... without a heading, "" without a unit. `lines` are the
-    lines of the rows in the file, `cell(row, column)` is a cell as written, and `notes` are comments such as
-    `name = value`. `step` and `start` [s] are None and 0 if the file does not state them.
+    lines of the rows in the file and `places` the columns in it, from 0. `cell(row, column)` is a cell as
+    written, and `notes` are comments such as `name = value`. `step` and `start` [s] are None and 0 if the
+    file does not state them.
     """
 
     names: tuple[str, ...]
@@ -42,6 +43,7 @@ class Table:
     rows: Array
     lines: NDArray[np.int64]
     recognised: str
+    places: tuple[int, ...]
     cell: Callable[[int, int], str] = lambda row, column: "nan"
     step: float | None = None
     start: float = 0.0
@@ -172,6 +174,7 @@ def read_text(text: str, encoding: str = "") -> Table:
         rows=values[begin:, columns],
         lines=np.array([n for n, _ in numbered[begin:]]),
         recognised="; ".join(filter(None, how)),
+        places=tuple(columns.tolist()),
         cell=lambda row, column: body[row][columns[column]].strip()[:40],
         step=_stated(words, form.step),
         start=_stated(words, form.start) or 0.0,

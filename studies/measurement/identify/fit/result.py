@@ -20,6 +20,7 @@ from studies.measurement.identify.fit.profiles import Walk
 from studies.measurement.identify.motion.displacement import SENSOR
 from studies.measurement.identify.record.records import Array, NoAnswer, Record, Undetermined
 from studies.physics.parameters import parameters_of
+from studies.shell.digits import in_unit
 
 LEVEL = 0.90  # probability of the intervals
 TOO_SMALL = 1e-3  # probability of such residuals from noise alone, below which the model is too small
@@ -87,6 +88,12 @@ class Fit:
     def too_small(self) -> bool:
         """Whether the residuals are unlike noise: the model is too small for the record."""
         return self.chance < TOO_SMALL
+
+    @property
+    def against_noise(self) -> str:
+        """The size of the residuals beside the given noise, in words."""
+        seen, given = (in_unit(one, self.record.unit, 3) for one in (float(self.residuals.std()), self.noise))
+        return f"the residuals are {seen}, the given noise is {given}"
 
     @property
     def settled(self) -> bool:

@@ -13,7 +13,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from beam import Refusal
+from beam import InvalidValue, Refusal
 from contact import ContactError, ImpactOscillator
 from studies import letter
 from studies.measurement.identify.fit.descent import Found
@@ -29,6 +29,7 @@ from studies.measurement.identify.record.records import READ_OUT, Array, NoAnswe
 from studies.measurement.identify.record.soundness import sound
 from studies.measurement.identify.record.spectrum import repetition
 from studies.physics.parameters import parameters_of, require_names, with_values
+from studies.shell.digits import in_unit
 
 LEASH = 1.0  # prior of the parameters while few rows are fitted, which need not determine all of them
 EARLY, ROUGH = 40, 1e-3  # most steps from each start, until chi^2 falls by no more than this part
@@ -36,6 +37,7 @@ FINISHED = 3  # starts that are fitted to the end; more if none is like the reco
 SAME = 3e-3  # relative difference of values that are the same
 ASTRAY = 9.0  # growth of chi^2 by row at which the fit of more and more rows is given up
 SHORT = 20.0  # drive periods of a motion that are fitted where more are not: chaos forgets its start
+LOUD = 0.3  # noise over the scatter of a record that hides all impacts
 LOST = 30.0  # error of a parameter over its value at which no profile shows more
 TONE = 0.7  # part of what does not repeat that a hum must have to be the reason why there is no fit
 AGAIN, BETTER = 4, 0.2  # fits begun at a better point of a profile; by how much chi^2 is less there
@@ -59,6 +61,9 @@ def fit(
     known = noise is not None or len(record.columns) == 4
     unit = noise or (letter.AMPLITUDE_STABILITY if record.kind == "transitions" else READ_OUT)
     if record.kind == "motion":
+        if noise is not None and noise > LOUD * (size := float(record.observed.std())):
+            given, seen = (in_unit(one, record.unit, 3) for one in (noise, size))
+            raise InvalidValue(f"noise is {given}; it must be well below the scatter of the record, {seen}")
         return _displacement(*sound(record, oscillator), tuple(names), free, unit, known)
     starts = predictions_of(record, oscillator, tuple(names), free)
     return _solved(starts, tuple(names), oscillator, unit, known)

@@ -28,6 +28,10 @@ from studies.shell.tables.units import COUNT_WORDS, is_time, known, plain, split
 
 FEWEST: dict[Kind, int] = {"strobe": 4, "motion": 40, "transitions": 1}  # rows that each kind needs
 LARGEST, LATEST = 1e6, 1e15  # largest size of a number, in the unit of its column, and of a time [s]
+LEAST, MOST = 1e-15, 1e9  # sizes of a unit, in SI
+COARSE = 0.02  # step of rounded stamps over the time between two rows, above which rows are evenly spaced
+SAME = 0.95  # share of equal steps above which the others are faults and no rounding
+DAY = 86400.0  # [s]
 FAR = 100.0  # first stamp over the span of the record, above which times begin at the first row
 NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?", re.I)
 UNIT = re.compile(rf"(?:.+=)?\s*({NUMBER.pattern})?\s*([^\s=]+)", re.I)  # mm, V=mm, V=5e-3 m
@@ -52,10 +56,12 @@ class Source:
     def place(self, name: str) -> int:
         """The column of this name, or of this number from 1."""
         names = [one.lower() for one in self.table.names]
-        numbers = [str(i + 1) for i in range(len(names))]
+        numbers = [str(i + 1) for i in self.table.places]
         for way in (names, [split(one)[0] for one in names], numbers):
             if way.count(name.strip().lower()) == 1:
                 return way.index(name.strip().lower())
+            if way.count(name.strip().lower()) > 1:
+                raise self.refuse(f"has several columns {name.strip()[:40]!r}: choose by number, {numbers}")
         raise self.refuse(f"has no column {name.strip()[:40]!r}; it has {self.listed(range(len(names)))}")
 
     def listed(self, places: range | list[int]) -> str:
@@ -83,7 +89,7 @@ class Source:
             raise self.refuse(f"has no channel beside its time; its columns are {self.listed(times)}")
         if len(rest) > 1:
             what = f"{len(rest)} channels, {self.listed(rest)}"
-            example = ",".join(str(i + 1) for i in [*clocks[:1], rest[0]])
+            example = ",".join(str(table.places[i] + 1) for i in [*clocks[:1], rest[0]])
             raise self.refuse(f"has {what}: choose one, as in --columns {example}")
         return next(iter(clocks), None), rest[0]
 
@@ -95,8 +101,14 @@ class Source:
             found = UNIT.fullmatch(self.unit.strip())
             dimension, size = known(found[2]) if found else ("", 1.0)
             size *= float(found[1] or 1.0) if found else 1.0
-            if dimension not in CHANNELS.values() or not 0.0 < abs(size) < math.inf:
+            if dimension not in CHANNELS.values() or not LEAST < abs(size) < MOST:
                 raise InvalidValue(f"unit is {self.unit!r}; it must be such as mm, m/s, g or V=5e-3 m")
+            symbol, equals, _ = self.unit.partition("=")
+            same = symbol.strip() == "1" or plain(written).lower().startswith(
+                plain(symbol).lower()
+            )  # V, Volt
+            if equals and written and not same:
+                raise self.refuse(f"has the unit {written!r}, but unit is {self.unit!r}")
             differs = stated[0] and stated != (dimension, size)
             written = self.unit.strip() + (f" (the file says {written})" if differs else "")
         if dimension not in CHANNELS.values():
@@ -114,10 +126,12 @@ class Source:
     def times(self, i: int | None) -> tuple[Array, str]:
         """The times of all rows [s], and in words where they are from."""
         table = self.table
-        if i is not None and not self.counted(i):
-            name = split(table.names[i])[0]
-            if self.rate is not None:
-                raise InvalidValue(f"rate is {self.rate:g} Hz, but {name!r} of {self.path} is its time")
+        if i is not None and self.rate is None and not self.counted(i):
+            name, written = split(table.names[i])[0], table.units[i]
+            if written and not known(written)[0] and not re.fullmatch(r"[hmsyd:./ _-]*", written, re.I):
+                raise self.refuse(
+                    f"has the unit {written!r} for the time {name!r}; it must be s, ms, min or h"
+                )
             unit = next((one for one in (table.units[i], name) if known(one)[0]), "s")  # millis, ...
             dimension, size = known(unit)
             if dimension != "s":
@@ -133,7 +147,7 @@ class Source:
             what = "no time" if i is None else f"only the count {table.names[i]!r} for a time"
             raise self.refuse(f"has {what}: give --rate HZ")
         count = np.arange(1.0 * len(table.rows))
-        if i is not None:
+        if i is not None and self.counted(i):
             count = table.rows[:, i] - np.nanmin(table.rows[:, i])
         return table.start + count * step, f"at {source}"
 
@@ -157,7 +171,9 @@ class Source:
         time, value = self.chosen()
         column, size, unit = self.channel(value)
         times, over = self.times(time)
-        rows, notes, n = np.column_stack([times, self.table.rows[:, value] * size]), list[str](), len(times)
+        times = times + DAY * np.append(0.0, np.cumsum(np.diff(times) < -0.5 * DAY))  # past midnight
+        times, rounded = evened(times)
+        rows, notes, n = np.column_stack([times, self.table.rows[:, value] * size]), [*rounded], len(times)
         lost = np.asarray(np.isnan(rows).any(axis=1))
         if lost.any():
             count, at = f"{np.sum(lost)} of {n} rows", f"the first is {self.first(lost, time, value)}"
@@ -172,6 +188,9 @@ class Source:
             raise self.refuse(f"has the time {at}; times must rise")
         if again.size:
             at = f"the first is line {self.table.lines[again[0]]}"
+            if again.size > 0.5 * n:
+                what = f"{again.size} of {n} rows that repeat the time before"
+                raise self.refuse(f"has {what}: its times are too coarse, so give --rate HZ")
             notes.append(f"{again.size} of {n} rows repeat the time before and are left out: {at}")
         kept = np.setdiff1d(kept, again)
         rate = 1.0 / np.median(steps[steps > 0.0]) if len(kept) > 1 else math.nan
@@ -180,6 +199,22 @@ class Source:
         if self.columns is self.unit is self.rate is None and self.table.names == record.columns:
             return record
         return replace(record, reading=f"read as {self.table.recognised}: {what}")
+
+
+def evened(times: Array) -> tuple[Array, list[str]]:
+    """Times of evenly spaced rows where a clock has rounded most of them, and a note; else the times."""
+    kept = np.flatnonzero(np.isfinite(times))
+    each = np.round(np.diff(times[kept]) / np.diff(kept), 9) if kept.size > 2 else np.zeros(1)
+    steps = np.unique(each)
+    if not 1 < steps.size < 6 or np.mean(each == np.median(each)) > SAME:
+        return times, []
+    clock, line = float(np.diff(steps).min()), np.polyfit(kept, times[kept], 1)
+    even = np.asarray(np.polyval(line, np.arange(times.size)), dtype=float)
+    slope, off = float(line[0]), float(np.abs(even - times)[kept].max())
+    if not clock > COARSE * slope or off > 1.01 * clock or slope * times.size < 50.0 * clock:
+        return times, []
+    note = f"stamps are multiples of {clock:.3g} s: rows are taken as evenly spaced by {slope:.6g} s"
+    return even, [note]
 
 
 def read_record(

@@ -42,6 +42,7 @@ RATIOS = (
     ("an angular frequency", "2 pi", 2.0 * math.pi, 1.01, ("free_period", "frequency")),
 )
 """Units, their ratio, by which factor another may differ and still be one (10 is none), and of what."""
+WRONG = {"amplitude": 30.0, "gap": 300.0}  # ratios that only a wrong unit explains
 
 
 def drive_found(times: Array, values: Array, frequency: float, order: int = 0) -> tuple[float, str] | None:
@@ -83,7 +84,8 @@ def poor_rows(times: Array, values: Array, off: Array, frequency: float, order: 
     found = [f"readings stick at {one}: the sensor or the recorder saturates" for one in where]
     rows, phase = np.flatnonzero(off > STRAY), np.exp(2j * math.pi * frequency * times[off > 0.5 * STRAY])
     if order < 2 and (0 < rows.size < 3 or (rows.size and abs(phase.mean()) < 0.8)):  # contacts are pulses
-        first = f"the first in row {rows[0] + 1} at {times[rows[0]]:.4g} s: {STRAY:g} standard deviations off"
+        place = f"the first in row {rows[0] + 1} at {times[rows[0]]:.4g} s"
+        first = f"{place}: more than {STRAY:g} standard deviations off"
         found.append(f"{rows.size} of {times.size} rows are outliers, {first}")
     return found
 
@@ -102,7 +104,7 @@ def defects(times: Array, values: Array, frequency: float | None, order: int = 0
     sentences = {
         f"the record has {rows} rows of {cycles:.2g} drive periods; it must have at least 3": cycles < 2.99,
         f"there are {sampled} is too slow: aliasing": rows < 2.0 * cycles,
-        f"the record is a free decay: no line of it lasts, it falls to 1/{fall:.2g}": decays,
+        f"the record is a free decay: no line of it lasts, it falls to 1/{min(fall, 9999.0):.0f}": decays,
     }
     found = [sentence for sentence, true in sentences.items() if true]
     return found + poor_rows(times, values, off_neighbours(times, values)[0], line, order)
@@ -115,7 +117,7 @@ def sound(record: Record, oscillator: ImpactOscillator) -> tuple[Record, ImpactO
     """
     (times, x), given = record.rows.T, record.frequency
     if faults := defects(times, x, given, record.order):
-        raise NoAnswer(f"the record has no answer: {'; '.join(faults)}")
+        raise NoAnswer("; ".join(faults))
     if given and (other := drive_found(times, x, given, record.order)):
         if abs(given / other[0] - 1.0) > OFF:
             raise InvalidValue(other[1])
@@ -133,21 +135,24 @@ def sound(record: Record, oscillator: ImpactOscillator) -> tuple[Record, ImpactO
 
 
 def unit_of(found: float, given: float, what: str) -> str | None:
-    """Words for the unit in which the record or the given value of `what` would agree with the other one."""
-    base = "seconds" if "period" in what else "metres"
+    """Words for the unit that either the record or the given value of `what` has by mistake."""
+    base, ratio = "seconds" if "period" in what else "metres", max(found / given, given / found)
     for unit, number, factor, near, whose in RATIOS:
-        for one, other, thing in ((given, found, f"the given {what}"), (found, given, "the record")):
-            if what in whose and 1.0 / near < one / (factor * other) < near:
-                return f"{thing} looks like {unit.format(base)}: divide by {number}"
-    return None
+        if what in whose and 1.0 / near < ratio / factor < near:
+            return f"a factor of {number}, so one of the two is in {unit.format(base)}"
+    return (
+        f"a factor of {ratio:.2g}: one of the two has a wrong unit"
+        if ratio > WRONG.get(what, ratio)
+        else None
+    )
 
 
 def require_units(record: Record, oscillator: ImpactOscillator, found: Mapping[str, float]) -> None:
     """InvalidValue if the ratio of two units is between given values and the ones `found` in the record."""
     for name in ("amplitude" if record.amplitude else "gap", "free_period"):
-        known = parameters_of(oscillator)[name]
+        known, where = parameters_of(oscillator)[name], "as given" if name == "amplitude" else "in the scene"
         if name in found and (words := unit_of(found[name], known.value, name)):
-            both = f"{found[name]:.4g} {known.unit} by the record, {known.value:.4g} {known.unit} as given"
+            both = f"{found[name]:.4g} {known.unit} by the record and {known.value:.4g} {known.unit} {where}"
             raise InvalidValue(f"{name} is {both}: {words}")
 
 
