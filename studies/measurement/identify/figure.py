@@ -83,7 +83,7 @@ def _record(left: Axes, right: Axes, one: Fit) -> None:
     right.plot(place, off, "o", ms=1.3 if off.size > FEW else 3.0, mew=0.0, rasterized=True, **PALE)
     for way in (-1.0, 1.0):
         right.plot(place, way * noise, "k--", linewidth=0.7, label="±1 standard deviation of the noise")
-    left.margins(0.02, 0.15)
+    left.margins(0.05 if few else 0.02, 0.15)
     for axis, name, its in ((left, words, unit), (right, "record less fit", small)):
         plotting.label(axis.yaxis, name, its)
         plotting.label(axis.xaxis, *across)
