@@ -15,7 +15,7 @@ from studies.measurement.identify import __main__ as program
 from studies.measurement.identify import figure
 from studies.measurement.identify.fit.profiles import rows_of
 from studies.measurement.identify.fit.search import fit
-from studies.measurement.identify.motion.displacement import SENSOR, UNITS
+from studies.measurement.identify.motion.readings import SENSOR, UNITS
 from studies.measurement.identify.motion.starts import predictions_of, strobe_period
 from studies.measurement.identify.record.reading import read_record
 from studies.measurement.identify.record.records import NoAnswer, synthetic

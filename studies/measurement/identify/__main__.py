@@ -58,7 +58,7 @@ from studies import letter
 from studies.measurement.identify.fit.diagnosis import contradictions
 from studies.measurement.identify.fit.result import Fit
 from studies.measurement.identify.fit.search import fit as fitted
-from studies.measurement.identify.motion.displacement import SENSOR
+from studies.measurement.identify.motion.readings import SENSOR
 from studies.measurement.identify.record.reading import read_record
 from studies.measurement.identify.record.records import Kind, NoAnswer, Record, synthetic
 from studies.measurement.identify.report import as_scene, report, without_errors

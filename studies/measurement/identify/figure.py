@@ -13,7 +13,7 @@ from scipy.stats import norm
 
 from studies.measurement.identify.fit.profiles import Profile
 from studies.measurement.identify.fit.result import Fit
-from studies.measurement.identify.motion.displacement import Displacement
+from studies.measurement.identify.motion.readings import Readings
 from studies.physics.parameters import parameters_of
 from studies.shell import plotting
 from studies.shell.digits import minus, prefixed, written
@@ -68,7 +68,7 @@ def _record(left: Axes, right: Axes, one: Fit) -> None:
     words, scale, unit, fine, small = READINGS[record.columns[-1 if record.kind != "strobe" else 0]]
     off, across, few = fine * one.residuals[:, 0], ("drive frequency", "Hz"), record.kind == "transitions"
     noise = record.units(one.problem.noise)[:, 0] * fine * one.noise / one.problem.noise
-    if isinstance(prediction, Displacement) and record.kind == "motion":
+    if isinstance(prediction, Readings) and record.kind == "motion":
         second, prefix = prefixed(place[-1] - place[0], "s")
         _motion(left, one, prediction, scale, second)
         place, across = place / second, ("time", prefix)
@@ -96,7 +96,7 @@ def _record(left: Axes, right: Axes, one: Fit) -> None:
         right.set_ylim(-most, most)
 
 
-def _motion(axis: Axes, one: Fit, prediction: Displacement, scale: float, second: float) -> None:
+def _motion(axis: Axes, one: Fit, prediction: Readings, scale: float, second: float) -> None:
     """Rows as open dots, the fit at finely spaced times, its impacts, and the stop."""
     (oscillator, extra), (times, seen) = one.problem.at(one.unknowns), one.record.rows.T
     lasting, count = prediction.m * oscillator.period or math.inf, ORBITS * prediction.m or SHOWN

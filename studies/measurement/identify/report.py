@@ -11,7 +11,7 @@ import numpy as np
 from studies.measurement.identify import figure
 from studies.measurement.identify.fit.profiles import Profile, rows_of
 from studies.measurement.identify.fit.result import Fit
-from studies.measurement.identify.motion.displacement import UNITS
+from studies.measurement.identify.motion.readings import UNITS
 from studies.physics.calibration import calibrate
 from studies.physics.parameters import fitted_scene, parameters_of
 from studies.shell.digits import minus, prefixed, written
@@ -198,7 +198,7 @@ def report(run: Run, found: Mapping[str, Fit]) -> dict[str, Any]:
     run.table("quality", quality, "The residuals of the fits.", of=Quality)
     points = [row for rows in profiles.values() for row in rows]
     run.table("profile", points, "Likelihood where two parameters trade off.", of=Profile, show=())
-    holds = "Reading less fit of each row of a record, in the units of its columns: m, m/s, or an excess."
+    holds = "Reading less fit of each row of a record, in its unit: m, m/s, m/s², or an excess."
     run.arrays("residuals", holds, **{f"residuals_{name}": one.residuals for name, one in found.items()})
     for name, one in found.items():
         values = {row.parameter: row.value for row in estimates if row.record == name}

@@ -17,7 +17,7 @@ from contact import ImpactOscillator
 from studies.measurement.identify.fit.descent import SEEN, Found
 from studies.measurement.identify.fit.problem import MOST, SETTLED, Problem, chance_of
 from studies.measurement.identify.fit.profiles import Walk
-from studies.measurement.identify.motion.displacement import SENSOR
+from studies.measurement.identify.motion.readings import SENSOR
 from studies.measurement.identify.record.records import Array, NoAnswer, Record, Undetermined
 from studies.physics.parameters import parameters_of
 from studies.shell.digits import in_unit

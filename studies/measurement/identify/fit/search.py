@@ -64,7 +64,7 @@ def fit(
         if noise is not None and noise > LOUD * (size := float(record.observed.std())):
             given, seen = (in_unit(one, record.unit, 3) for one in (noise, size))
             raise InvalidValue(f"noise is {given}; it must be well below the scatter of the record, {seen}")
-        return _displacement(*sound(record, oscillator), tuple(names), free, unit, known)
+        return _motion(*sound(record, oscillator), tuple(names), free, unit, known)
     starts = predictions_of(record, oscillator, tuple(names), free)
     return _solved(starts, tuple(names), oscillator, unit, known)
 
@@ -93,7 +93,7 @@ def _solved(
     return determined(replace(result, walks=walks))
 
 
-def _displacement(
+def _motion(
     record: Record,
     oscillator: ImpactOscillator,
     names: tuple[str, ...],

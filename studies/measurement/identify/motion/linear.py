@@ -13,7 +13,7 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from contact import ImpactOscillator
-from studies.measurement.identify.motion.displacement import SENSOR, Displacement
+from studies.measurement.identify.motion.readings import SENSOR, Readings
 from studies.measurement.identify.record.channel import response
 from studies.measurement.identify.record.kicks import poles
 from studies.measurement.identify.record.records import Array, NoAnswer, Record
@@ -76,7 +76,7 @@ class Linear:
 
     def start(
         self, oscillator: ImpactOscillator, names: Sequence[str], free: Sequence[str]
-    ) -> tuple[Displacement, ImpactOscillator, tuple[str, ...]]:
+    ) -> tuple[Readings, ImpactOscillator, tuple[str, ...]]:
         """The start of a fit with the stop far away, and the names that can be fitted."""
         kept, lost = ([n for n in names if (n in NAMES) == own] for own in (True, False))
         alike = [name for name in kept if name in NAMES[:RESPONSE]]
@@ -100,7 +100,7 @@ class Linear:
         sensor = {name: read.get(name, one) if name in free else one for name, one in SENSOR.items()}
         note = f"no impact in the record: not fitted: {', '.join(lost) or 'nothing else'}"
         record = replace(self.record, notes=(*self.record.notes, note))
-        return Displacement(record, at, state, sensor, free), at, tuple(kept)
+        return Readings(record, at, state, sensor, free), at, tuple(kept)
 
 
 def state_of(oscillator: ImpactOscillator, base: complex, free: complex) -> Array:

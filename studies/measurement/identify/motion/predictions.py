@@ -1,8 +1,7 @@
 """Predicted rows of a record for an oscillator with given parameters, and their derivatives.
 
-Strobe points: the periodic orbit p_m next to the last one (``contact.orbits.Shooting``), its m strobes in the
-cyclic order that fits best. Transitions: the fold of each p_m. A displacement is predicted in
-`studies.measurement.identify.motion.displacement`.
+Transitions: the fold of each p_m. A motion and its strobe points are predicted in
+`studies.measurement.identify.motion.readings`.
 """
 
 import copy

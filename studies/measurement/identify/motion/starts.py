@@ -4,7 +4,7 @@ Strobe points: they repeat after m rows.  The start is the orbit p_m of the give
 drive.  If there is none, or none like the record, parameters and approach speed are fitted together until an
 orbit is close.  The drive amplitude may then be a little off.
 
-Displacement: the kicked motion that is most like it (``record.kicks``) gives free period, decay rate,
+A motion: the kicked motion that is most like it (``record.kicks``) gives free period, decay rate,
 amplitude, phase, gap, restitution, the offset and the sign of the sensor, and the state at the first row.  It
 does not show the stiffness or the delay of a contact, of which several values are tried.
 """
@@ -19,8 +19,8 @@ from scipy.optimize import least_squares
 from beam import Refusal
 from contact import ContactError, ImpactOscillator, SingleImpactOrbit, State, simulate
 from contact.orbits import Shooting
-from studies.measurement.identify.motion.displacement import SENSOR, Displacement
 from studies.measurement.identify.motion.predictions import Prediction, Transitions, family_of
+from studies.measurement.identify.motion.readings import SENSOR, Readings
 from studies.measurement.identify.record.channel import clear_of
 from studies.measurement.identify.record.kicks import Kicked, kicked_motions
 from studies.measurement.identify.record.records import Array, NoAnswer, Record
@@ -57,7 +57,7 @@ def predictions_of(
     if record.kind == "strobe":
         require_strobe_units(record, oscillator)
         return [_strobes(record, oscillator, names)]
-    return _displacement(record, oscillator, names, free)
+    return _motion(record, oscillator, names, free)
 
 
 def strobe_period(record: Record) -> int:
@@ -78,19 +78,19 @@ def strobe_period(record: Record) -> int:
 
 def _strobes(
     record: Record, oscillator: ImpactOscillator, names: Sequence[str]
-) -> tuple[Displacement, ImpactOscillator]:
+) -> tuple[Readings, ImpactOscillator]:
     period, size = strobe_period(record), float(record.observed[:, 0].std())
     if (count := period * record.observed.shape[1]) < len(names):
         raise NoAnswer(f"p{period} gives {count} numbers, too few for {len(names)} parameters")
 
-    def near(at: ImpactOscillator, most: float) -> Displacement | None:
+    def near(at: ImpactOscillator, most: float) -> Readings | None:
         """The orbit at the drive of this oscillator, if it is off by less than this part of the record."""
         try:
             orbits = family_of(at, period).orbits(at.excess)
             if not orbits:
                 return None
             start = strobes_of(orbits[-1], record)[1]
-            found = Displacement(record, at, start, SENSOR, (), m=period)
+            found = Readings(record, at, start, SENSOR, (), m=period)
             off = (found.values(at, found.extra) - record.observed)[:, 0]
         except (ContactError, Refusal):
             return None
@@ -151,7 +151,7 @@ def _searched(
     return orbit_at(min(found, key=lambda one: one.cost).x)
 
 
-def _displacement(
+def _motion(
     record: Record, oscillator: ImpactOscillator, names: Sequence[str], free: Sequence[str]
 ) -> Sequence[tuple[Prediction, ImpactOscillator]]:
     motions = kicked_motions(record, oscillator)
@@ -175,7 +175,7 @@ def starts_at(
     names: Sequence[str],
     free: Sequence[str],
     few: bool,
-) -> list[tuple[Displacement, ImpactOscillator]]:
+) -> list[tuple[Readings, ImpactOscillator]]:
     """Starts at a kicked motion, with several values of what it does not show of the contact, or `few`;
     and at the given values."""
     at, read = motion.oscillator, motion.reading()
@@ -210,9 +210,9 @@ def starts_at(
     given = [] if few or not oscillator.driven.amplitude else given
     moved = next((name for name in ("gap", "amplitude") if name in names), None)
     clear = clear_of(record, motion.kicks, motion.kicks, lasting, WIDE * at.period)
-    pairs = list[tuple[Displacement, ImpactOscillator]]()
+    pairs = list[tuple[Readings, ImpactOscillator]]()
     for one in [*(_behind(one, start, lowest, lasting) for one in tried), *given]:
-        prediction = Displacement(clear, one, start, sensor, free, whole=record, m=motion.m, clock=lowest)
+        prediction = Readings(clear, one, start, sensor, free, whole=record, m=motion.m, clock=lowest)
         closed = _closing(prediction, one, moved)
         with suppress(ContactError, Refusal):
             prediction = prediction.cleared(closed, prediction.extra, WIDE * at.period) or prediction
@@ -220,7 +220,7 @@ def starts_at(
     return pairs
 
 
-def _closing(prediction: Displacement, oscillator: ImpactOscillator, name: str | None) -> ImpactOscillator:
+def _closing(prediction: Readings, oscillator: ImpactOscillator, name: str | None) -> ImpactOscillator:
     """The oscillator; where no orbit closes, with the value of this name near by that fits best."""
     part, found = prediction.parts()[0], list[tuple[float, float]]()
     value = parameters_of(oscillator)[name or "gap"].value

@@ -11,8 +11,8 @@ from dataclasses import replace
 import numpy as np
 
 from contact import ImpactOscillator
-from studies.measurement.identify.motion.displacement import Displacement
 from studies.measurement.identify.motion.linear import Linear, state_of
+from studies.measurement.identify.motion.readings import Readings
 from studies.measurement.identify.motion.starts import TRIED, starts_at
 from studies.measurement.identify.record.kicks import Search, kicked_motions, poles
 from studies.measurement.identify.record.records import Array, NoAnswer
@@ -26,7 +26,7 @@ LONGEST_RETURN = 9  # drive periods after which it may nearly repeat
 
 def unsteady_starts(
     linear: Linear, oscillator: ImpactOscillator, names: Sequence[str], free: Sequence[str]
-) -> list[tuple[Displacement, ImpactOscillator]]:
+) -> list[tuple[Readings, ImpactOscillator]]:
     """Starts of a motion that does not repeat, at the first row off the stop, from kicked and linear ones.
 
     Its state there is that of the steady motion and of mode 1, as the rows until the first impact show it.
@@ -34,7 +34,7 @@ def unsteady_starts(
     record = linear.record
     if record.order:
         raise NoAnswer("a motion that does not repeat is fitted to a displacement alone: record that")
-    times, x, found = *record.rows.T, list[tuple[Displacement, ImpactOscillator]]()
+    times, x, found = *record.rows.T, list[tuple[Readings, ImpactOscillator]]()
     part, period = close_return(times, x, linear.frequency)
     at = with_values(oscillator, {"frequency": linear.frequency})
     motions = kicked_motions(record, oscillator)
@@ -55,7 +55,7 @@ def unsteady_starts(
         state = state_of(at, base[0], complex(a, b))
         rest = replace(record, rows=record.rows[begin:])
         first = int(np.searchsorted(rest.rows[:, 0], times[begin] + EARLY * at.period))
-        found.append((Displacement(rest, at, state, sensor, free, first=first), at))
+        found.append((Readings(rest, at, state, sensor, free, first=first), at))
     return found
 
 

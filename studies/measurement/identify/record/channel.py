@@ -9,7 +9,7 @@ and a sensor of the order k = 0, 1 or 2 reads the k-th derivative in time of
     phi q + ground z,   ground = 1 for a sensor that stands on the ground, 0 for one on the base.
 
 A blow changes the velocity at once, and the force of a contact is no part of the acceleration above.  So
-rows next to an impact are left out (`Displacement.apart`); no reading is integrated or differentiated.
+rows next to an impact are left out (`clear_of`); no reading is integrated or differentiated.
 """
 
 from collections.abc import Sequence

@@ -1,8 +1,9 @@
-"""The displacement of the tip as a sensor reads it, and its derivatives.
+"""A motion as a sensor reads it, and its derivatives; ``record.channel`` says what x is.
 
     y(t) = offset + scale x(t),   base motion Z sin(2 pi f t + phase),
 
-t the time of the record.  A settled motion repeats after m drive periods P = m/f.  Its rows are folded onto
+t the time of the record, and x the displacement of the tip, its velocity or its acceleration.  Strobe points
+have x, and perhaps the velocity, at whole drive periods.  A settled motion repeats after m drive periods P = m/f.  Its rows are folded onto
 one orbit: a row at t belongs to the time
 
     s = s_0 + (t + phase/(2 pi f) - s_0) mod P
@@ -49,7 +50,7 @@ GROWTH = 1.2  # of the rows of a motion that does not repeat; in chaos more lead
 
 SENSOR: Mapping[str, float] = {"phase": 0.0, "offset": 0.0, "scale": 1.0}
 """The numbers of a sensor, each with its value where it is not fitted: the phase of the drive at time zero
-[rad], the reading at equilibrium [m], the reading per displacement [1]."""
+[rad], the reading at equilibrium, in the unit of the record, and the reading over what is read [1]."""
 
 UNITS = {"phase": "rad", "offset": "m", "scale": "1"}
 
@@ -77,7 +78,7 @@ def _values(oscillator: ImpactOscillator, names: Sequence[str]) -> Array:
     return np.array([known[name].value for name in names])
 
 
-class Displacement(Prediction):
+class Readings(Prediction):
     """The reading at the times of the record, from the modal displacements and velocities `start`.
 
     A motion with a `period` m has this start at the time `clock` of the drive [s]; one that does not repeat
