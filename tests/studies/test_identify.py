@@ -19,7 +19,7 @@ from studies.measurement.identify.motion.readings import SENSOR, UNITS
 from studies.measurement.identify.motion.starts import predictions_of, strobe_period
 from studies.measurement.identify.record.reading import read_record
 from studies.measurement.identify.record.records import NoAnswer, synthetic
-from studies.measurement.identify.report import Estimate
+from studies.measurement.identify.report import Estimate, notes_of
 from studies.measurement.next_measurement import model as design
 from studies.physics.parameters import ALIASES, fitted_scene, parameters_of, with_values
 from studies.shell.digits import written
@@ -121,6 +121,15 @@ def test_restitution_and_delay_trade_off_and_the_profile_shows_it(made):
     assert slope == pytest.approx(found.covariance[3, 4] / found.covariance[4, 4], rel=0.05)
 
 
+def test_a_given_noise_that_is_far_from_the_residuals_is_said(made):
+    """Above the record's own scatter it hides all impacts; ten times too large it makes errors too large."""
+    record = synthetic("motion", made["one_mode"], seed=2, periods=10)
+    with pytest.raises(InvalidValue, match="noise is 5 mm; it must be well below the scatter"):
+        fit(record, made["one_mode"], ("gap",), noise=5e-3)
+    found = fit(record, made["one_mode"], ("gap",), noise=5e-6)
+    assert re.search(r"are 0\.\d+ µm, the given noise is 5 µm: the errors are too", " ".join(notes_of(found)))
+
+
 def test_noise_that_is_larger_than_it_is_said_to_be_is_noticed(made):
     record = synthetic("strobe", made["one_mode"], seed=1, noise=1e-6)
     for noise in (0.5e-6, 1e-6):
@@ -185,7 +194,10 @@ def test_the_command_line_takes_a_record_and_leaves_a_scene(run_study, tmp_path,
     assert np.all(np.abs(off) < 4.0 * errors)
     sizes = [abs(float(row["correlation"])) for row in ran.rows("correlations")]
     assert sizes == sorted(sizes, reverse=True) and sizes[-1] > 0.5
-    stop = single_mode_at(read_scene(ran.folder / "fitted.toml"), 22.2).stop
+    scene = read_scene(ran.folder / "fitted.toml")
+    beam, stop = beam_at(scene, 22.2).model, single_mode_at(scene, 22.2).stop
+    assert "fitted.toml keeps the beam of the scene: a sheet of 1.17" in ran.err
+    assert beam.n_modes > 1 and beam.free_period == pytest.approx(found["free_period"], rel=1e-8)
     assert (stop.gap, stop.law.local_restitution) == (found["gap"], found["restitution"])
 
 

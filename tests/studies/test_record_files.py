@@ -5,13 +5,17 @@ import io
 import re
 import sys
 import time
+from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from scipy.io import savemat, wavfile
 
 from beam import InvalidValue
+from studies.measurement.identify.__main__ import in_frame
 from studies.measurement.identify.record.reading import read_record
+from studies.measurement.identify.record.records import Record
 
 N, STEP = 200, 1e-3
 TIMES = STEP * np.arange(N)
@@ -258,6 +262,22 @@ def test_a_missing_package_is_named(run_study, tmp_path, monkeypatch, package, c
     (tmp_path / "a").write_bytes(content)
     ran = run_study("identify", str(tmp_path / "a"))
     assert ran.code == 2 and re.search(f"needs {package}: python -m pip install", ran.err, re.I), ran.err
+
+
+CHOSEN = [("x_m", None, "base"), ("v_m_per_s", None, "base"), ("a_m_per_s2", None, "ground")]
+GIVEN = [("a_m_per_s2", "base", ""), ("v_m_per_s", "ground", "")]
+
+
+@pytest.mark.parametrize(("column", "frame", "place"), [*CHOSEN, *GIVEN])
+def test_what_a_reading_is_relative_to_is_chosen_by_its_kind_and_printed(column, frame, place):
+    said, times = list[str](), np.arange(50.0)
+    record = Record(columns=("time_s", column), rows=np.array([times, times]).T, reading="read")
+    found = in_frame(record, frame, SimpleNamespace(say=said.append))
+    assert found.ground == ((frame or place) == "ground")
+    assert said[1:] == [one for one in said if one.startswith(f"taken as relative to the {place}; if not")]
+    assert len(said) == 2 - bool(frame)
+    with pytest.raises(InvalidValue, match="frame is base, but the record is no motion over time"):
+        in_frame(replace(record, columns=("x_m",), rows=record.rows[:, :1]), "base", SimpleNamespace())
 
 
 def test_a_long_record_is_read_soon(tmp_path):

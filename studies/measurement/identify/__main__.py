@@ -201,6 +201,9 @@ def identify(
     first, *_ = found
     fit_scene = as_scene(scene, found[first])  # before the report: it refuses values that no scene has
     results = report(run, found)
+    if fit_scene.spring.kind != "modal_data":
+        sheet = f"a sheet of {1e3 * fit_scene.spring.thickness_m:.4g} mm and its damping"
+        run.say(f"fitted.toml keeps the beam of the scene: {sheet} give mode 1 the fitted T and mu")
     about = [f"# {row.parameter} {row.value}" for row in results["rows"] if row.record == first]
     run.text("fitted.toml", "\n".join([*about, "", fit_scene.dump()]), "The scene with the fitted values.")
     if wanted:

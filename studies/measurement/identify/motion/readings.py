@@ -3,8 +3,8 @@
     y(t) = offset + scale x(t),   base motion Z sin(2 pi f t + phase),
 
 t the time of the record, and x the displacement of the tip, its velocity or its acceleration.  Strobe points
-have x, and perhaps the velocity, at whole drive periods.  A settled motion repeats after m drive periods P = m/f.  Its rows are folded onto
-one orbit: a row at t belongs to the time
+have x, and perhaps the velocity, at whole drive periods.  A settled motion repeats after m drive periods
+P = m/f.  Its rows are folded onto one orbit: a row at t belongs to the time
 
     s = s_0 + (t + phase/(2 pi f) - s_0) mod P
 

@@ -104,10 +104,8 @@ class Source:
             if dimension not in CHANNELS.values() or not LEAST < abs(size) < MOST:
                 raise InvalidValue(f"unit is {self.unit!r}; it must be such as mm, m/s, g or V=5e-3 m")
             symbol, equals, _ = self.unit.partition("=")
-            same = symbol.strip() == "1" or plain(written).lower().startswith(
-                plain(symbol).lower()
-            )  # V, Volt
-            if equals and written and not same:
+            alike = plain(written).lower().startswith(plain(symbol).lower())  # V, Volt
+            if equals and written and symbol.strip() != "1" and not alike:
                 raise self.refuse(f"has the unit {written!r}, but unit is {self.unit!r}")
             differs = stated[0] and stated != (dimension, size)
             written = self.unit.strip() + (f" (the file says {written})" if differs else "")
@@ -171,7 +169,8 @@ class Source:
         time, value = self.chosen()
         column, size, unit = self.channel(value)
         times, over = self.times(time)
-        times = times + DAY * np.append(0.0, np.cumsum(np.diff(times) < -0.5 * DAY))  # past midnight
+        if time is not None and ":" in self.table.cell(0, time):  # a time of day, past midnight
+            times = times + DAY * np.append(0.0, np.cumsum(np.diff(times) < -0.5 * DAY))
         times, rounded = evened(times)
         rows, notes, n = np.column_stack([times, self.table.rows[:, value] * size]), [*rounded], len(times)
         lost = np.asarray(np.isnan(rows).any(axis=1))
@@ -223,7 +222,7 @@ def read_record(
     """The record in a file; InvalidValue with one sentence on what is wrong with it.
 
     `columns` are TIME,VALUE or VALUE by name or number, `unit` of the channel replaces the file's, and `rate`
-    [Hz] gives times where there are none.
+    [Hz] gives times in place of the file's.
     """
     table = read_table(path)
     source, heading = Source(path, table, columns, unit, rate), tuple(name.lower() for name in table.names)
